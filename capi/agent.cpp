@@ -339,6 +339,24 @@ rdm_result rdm_agent_update(rdm_agent* a, const float* last_obs, rdm_epoch* io) 
   });
 }
 
+rdm_result rdm_agent_update_begin(rdm_agent* a, const float* last_obs) {
+  return call_on(a, [&] {
+    need(last_obs, "last_obs");
+    a->agent->begin_update(last_obs);
+  });
+}
+
+rdm_result rdm_agent_update_slice(rdm_agent* a, int32_t units, int32_t* done, rdm_epoch* io) {
+  return call_on(a, [&] {
+    need(done, "done");
+    if (units < 1) fail(Code::kRange, "units: %d is less than 1", units);
+    if (io) check_out(io, kFirstEpochSize, "io");
+    Epoch e;
+    *done = a->agent->update_on(units, &e);
+    if (*done && io) write_epoch(io, e);
+  });
+}
+
 void rdm_agent_cancel(rdm_agent* a) {
   if (is_handle(a)) a->agent->cancel();
 }
@@ -375,6 +393,7 @@ rdm_result rdm_agent_tensor_at(const rdm_agent* a, int32_t i, rdm_tensor* out) {
 namespace {
 TensorInfo find_tensor(Agent& agent, const char* name, size_t count) {
   need(name, "name");
+  agent.need_no_update("tensor");
   Vector<const char*> names;
   TensorInfo t;
   for (int32_t i = 0; agent.tensor(i, &t); ++i) {

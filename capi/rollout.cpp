@@ -89,6 +89,7 @@ PointRows clouds_of(const Agent& agent, const Pool& pool) {
 void rollout(Agent& agent, Pool& pool, DecisionBuffers& d, Epoch* out) {
   check_match(agent.config(), agent.action_repeat(), pool);
   const PointRows clouds = clouds_of(agent, pool);
+  agent.need_no_update("rollout");
   if (agent.missing() != agent.horizon())
     fail(Code::kState, "agent: a horizon was begun by hand: finish it with record and update");
   agent.ranks().set_pool(pool.config().seed, static_cast<int32_t>(pool.config().autoreset),

@@ -108,6 +108,7 @@ void Agent::read_live() {
 
 void Agent::set_option(const OptionInput& option) {
   if (!option.key) fail(Code::kArgument, "agent option: the key is NULL");
+  need_no_update("set_option");
   Options& o = resolved_.options;
   if (const OptionSpec* spec = o.spec_of(option.key); spec && !spec->live)
     fail(Code::kState, "agent option %s: fixed at creation", spec->key);
@@ -128,6 +129,7 @@ void Agent::set_option(const OptionInput& option) {
 
 void Agent::act(const float* obs, bool sample, float* action, const PointRows& clouds) {
   const FpMode mode;
+  if (sample) need_no_update("act");
   if (sample && collector_.idle()) check_cancel();
   if (sample && imitation_.wanted() && !imitation_.has_rows())
     fail(Code::kState, "act: option imitation needs a recording: rdm_agent_set_recording comes first");
@@ -136,6 +138,7 @@ void Agent::act(const float* obs, bool sample, float* action, const PointRows& c
 
 void Agent::values(const float* obs, int32_t rows, float* value, float* cost) const {
   const Options& o = resolved_.options;
+  need_no_update("values");
   for (const char* key : {"normalize_reward", "normalize_cost"})
     if (o.flag(key)) fail(Code::kUnsupported, "agent: with %s its critics have no fixed unit", key);
   collector_.value_rows(obs, rows, value, cost);
@@ -145,6 +148,7 @@ void Agent::values(const float* obs, int32_t rows, float* value, float* cost) co
 
 void Agent::record(const Transition& t) {
   const FpMode mode;
+  need_no_update("record");
   collector_.record(t);
 }
 
@@ -154,6 +158,7 @@ void Agent::discard() {
 }
 
 void Agent::need_idle(const char* call) const {
+  need_no_update(call);
   if (!collector_.idle()) fail(Code::kState, "%s: only between epochs; this horizon has begun", call);
 }
 
@@ -285,7 +290,7 @@ void Agent::visit_state(StateIo& io) {
 }
 
 void Agent::save(Writer& out) const {
-  if (!collector_.idle()) fail(Code::kState, "save: only between epochs; this horizon has begun");
+  need_idle("save");
   // The listing is shared with load; a StateWriter only reads.
   auto* const self = const_cast<Agent*>(this);
   Ranks& ranks = self->workers_.ranks();
@@ -320,6 +325,7 @@ void Agent::load(const void* bytes, size_t size) {
   collector_.after_load();
   workers_.ranks().restart();
   clamp_log_std(nets_);
+  end_run();
   drop_horizon();
 }
 

@@ -10,8 +10,9 @@
 //                passes over shuffled minibatches (learner), which move the critics and, but after such a
 //                step, the policy (policy_loss)
 //                the Epoch, the schedules, an empty rollout
-// It is a sequence of jobs (agent_update.cpp). An algorithm overrides what it does differently: the loss of the
-// policy (policy_loss), what happens before the policy step (begin_epoch), or the step itself.
+// It is a sequence of jobs that can be left anywhere (agent_update.cpp). An algorithm overrides what it does
+// differently: the loss of the policy (policy_loss), what happens before the policy step (begin_epoch), or the
+// step itself.
 //
 // Whose arrays: the agent's one arena holds them all, cut at creation by carve, so act, record and update
 // allocate nothing. Each part owns what its own carve cut and lends it by pointer:
@@ -67,15 +68,22 @@ class Agent {
   int32_t num_limited() const { return resolved_.num_limited; }
   int32_t limited_column(int32_t i) const { return resolved_.column[i]; }
   double discount() const { return resolved_.options.number("discount"); }
-  // After a cancel the parameters are those of the last finished minibatch.
+  // An update; in slices begin_update, then update_on with some units of work at a time until it is true, to
+  // the same bytes. Until then the actor of before acts without noise and goes into policy files. A failure, a
+  // cancel and discard leave the actor as it was; critics keep what finished minibatches taught them.
   void update(const float* last_obs, Epoch* out);
+  void begin_update(const float* last_obs);
+  bool update_on(int32_t units, Epoch* out);
+  static constexpr int32_t kWhole = -1;  // units: all that are left, as large as they are fastest
+  bool updating() const { return phase_ != Phase::kIdle; }
+  void need_no_update(const char* call) const;  // Error(kState) between begin_update and its end
   // Decisions still missing in this horizon; 0: update is due.
   int32_t missing() const { return collector_.missing(); }
   int32_t horizon() const { return resolved_.horizon; }
   int32_t action_repeat() const { return resolved_.action_repeat; }
   // Rollouts take magnitudes in the place of costs: option cost_signal.
   bool raw_costs() const { return raw_costs_; }
-  void drop_horizon() { collector_.drop(); }  // after a cancel: forget what was collected
+  void drop_horizon();  // after a cancel: forget what was collected, and an update that has begun
   // From any state back to between epochs: without a begun horizon, and without a cancel that waits.
   void discard();
   void cancel() { cancel_.set(); }  // from any thread or signal handler

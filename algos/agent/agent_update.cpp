@@ -1,6 +1,6 @@
-// An update, as the sequence of its jobs.
+// An update, whole or in slices: what begin, slices and cancels promise, and the order of everything in between.
 //
-//   begin     values of the last observations
+//   begin     values of the last observations; the actor is kept
 //   estimate  advantages and targets, a column at a time; the list of rows
 //   judge     episodes' costs against their limits, the algorithm's begin_epoch
 //   step      the algorithm's own step of the policy, where it has one (a trust region)
@@ -8,7 +8,8 @@
 //             them
 //   end       schedules, the Epoch, an empty rollout
 //
-// Between two jobs, and between two units of a job, it could be left: what it needs to go on stands in members.
+// Between two jobs, and between two units of a job, it can be left: what it needs to go on stands in members.
+// Nothing here looks at a clock, so any cut into slices gives the same bytes.
 #include <cstring>
 
 #include "algos/agent/agent.hpp"
@@ -25,8 +26,20 @@ constexpr double kEntropyOfUnit = 1.4189385332046727;  // of a normal with devia
 
 }  // namespace
 
+void Agent::need_no_update(const char* call) const {
+  if (updating())
+    fail(Code::kState,
+         "%s: an update has begun: rdm_agent_update_slice until it is done, or rdm_agent_discard", call);
+}
+
 void Agent::update(const float* last_obs, Epoch* out) {
+  begin_update(last_obs);
+  update_on(kWhole, out);
+}
+
+void Agent::begin_update(const float* last_obs) {
   const FpMode mode;
+  need_no_update("update");
   hear_cancel();
   if (missing() > 0) fail(Code::kState, "update: %d decisions are missing in this horizon", missing());
   if (!last_obs) fail(Code::kArgument, "last_obs: NULL");
@@ -34,14 +47,28 @@ void Agent::update(const float* last_obs, Epoch* out) {
   try {
     collector_.settle();
     collector_.begin_estimate(last_obs);
-    phase_ = Phase::kEstimate;
-    while (phase_ != Phase::kIdle) unit(true);
   } catch (...) {
-    end_run();
     drop_horizon();
     throw;
   }
+  keep_actor(nets_);
+  nets_.updating = true;
+  phase_ = Phase::kEstimate;
+}
+
+bool Agent::update_on(int32_t units, Epoch* out) {
+  const FpMode mode;
+  if (!updating()) fail(Code::kState, "update_slice: no update has begun");
+  const bool whole = units == kWhole;
+  try {
+    for (; updating() && (whole || units > 0); units -= !whole) unit(whole);
+  } catch (...) {
+    drop_horizon();
+    throw;
+  }
+  if (updating()) return false;
   if (out) *out = run_.epoch;
+  return true;
 }
 
 // Short work until there is a job, of which it does one unit. What takes its time otherwise is one too.
@@ -164,7 +191,7 @@ void Agent::end_update() {
   ++epoch_;
   if (!warm) schedule_std(nets_, resolved_.options, epoch_);
   if (!warm) average_actor(nets_);
-  end_run();
+  end_run();  // whatever fails from here on, it is the next policy
   Epoch& e = run_.epoch;
   fill_episodes(run_.stats, run_.totals, e);
   fill_counts(run_.totals, skipped, e);
@@ -176,6 +203,14 @@ void Agent::end_update() {
 void Agent::end_run() {
   phase_ = Phase::kIdle;
   job_ = Job();
+  nets_.updating = false;
+}
+
+// Of an update that has begun: the actor is what it was, so a policy file of this generation is this one's.
+void Agent::drop_horizon() {
+  if (updating()) restore_actor(nets_);
+  end_run();
+  collector_.drop();
 }
 
 // A cancel drops what was collected, full or not.

@@ -52,13 +52,15 @@ struct Networks {
   int64_t* averaged = nullptr;  // epochs in it; null: as average
 
   float* before = nullptr;  // the actor's block as keep_actor found it
+  bool updating = false;    // that is the policy of before an update that runs
 
   bool state_std() const { return std_size == 0; }
   float* log_std() const { return params; }
   size_t net_offset(int32_t i) const { return block[i].offset + (i == kActor ? std_size : 0); }
   float* net(int32_t i) const { return params + net_offset(i); }
-  // The actor that others get to see: log deviations, then the network.
-  const float* kept_log_std() const { return average ? average : params; }
+  // The actor that others get to see: log deviations, then the network. While an update runs it is the one from
+  // before; the average only moves when one ends.
+  const float* kept_log_std() const { return average ? average : updating ? before : params; }
   const float* kept_actor() const { return kept_log_std() + std_size; }
   // Of the encoder's parameters behind those of the actor's network.
   size_t eyes_offset() const { return shape[kActor].num_params(); }
@@ -124,7 +126,7 @@ void clamp_log_std(const Networks& n);
 void average_actor(const Networks& n);
 // It begins again with the actor as it is.
 void restart_average(const Networks& n);
-// The actor as it is, and back to it: around a line search.
+// The actor as it is, and back to it: around an update, and around a line search.
 void keep_actor(const Networks& n);
 void restore_actor(const Networks& n);
 // With std_schedule=linear the deviation for the epoch that follows `done` finished ones.

@@ -161,9 +161,31 @@ typedef struct rdm_epoch {
   int64_t slowed;             /* decisions flagged RDM_STATUS_SLOWED */
 } rdm_epoch;
 /* Learns from a full horizon; last_obs [num_envs][obs_dim] follows the last record. io may be NULL.
- * CANCELLED after rdm_agent_cancel (the horizon is dropped, full or not), STATE when the horizon is
- * not full. */
+ * CANCELLED after rdm_agent_cancel: the horizon is dropped, full or not, and the policy is as
+ * before. STATE when the horizon is not full. */
 RDM_API rdm_result rdm_agent_update(rdm_agent *a, const float *last_obs, rdm_epoch *io);
+/* The same in slices, for who may not wait: a robot at 1 kHz.
+ *   rdm_agent_update_begin(agent, obs);
+ *   for (int32_t done = 0; !done;) {
+ *     wait_for_tick(obs);
+ *     rdm_agent_act(agent, obs, RDM_ACT_MEAN, action);
+ *     rdm_agent_update_slice(agent, 1, &done, &e);
+ *   }
+ * begin takes last_obs [num_envs][obs_dim], returns what rdm_agent_update returns before it learns,
+ * and takes about as long as an rdm_agent_act. A slice does `units` (> 0) pieces of work; *done
+ * becomes 1 with the last one, and io (may be NULL) is filled then. Pieces follow from the data
+ * alone, and any slices give the bytes of one rdm_agent_update. The largest piece is one network
+ * forth and back, or a trust region's product with it, over 256 rows on each thread, or over 64
+ * where a minibatch has no more than 256; or some plain sums over all decisions of the horizon, or
+ * over all parameters.
+ * Between two slices the policy of before acts with RDM_ACT_MEAN and is what rdm_agent_write_policy
+ * writes. Whatever would change the agent or read what is half learned returns STATE: sampled acts,
+ * record, rollouts, options, tensors, values, states, checkpoints. rdm_agent_discard, a cancel that
+ * the next slice hears (CANCELLED), and rdm_agent_read_state drop the update. The policy is then as
+ * it was before; critics, optimisers and multipliers keep what they have learned. */
+RDM_API rdm_result rdm_agent_update_begin(rdm_agent *a, const float *last_obs);
+RDM_API rdm_result rdm_agent_update_slice(rdm_agent *a, int32_t units, int32_t *done,
+                                          rdm_epoch *io);
 /* One epoch natively: act, step (action_repeat control steps), record until the horizon is full,
  * then update. The pool must have been reset and must not have autoreset off; dims and num_envs
  * must agree. A pool that repeats actions itself takes as many steps at a time: the agent's
@@ -175,9 +197,9 @@ RDM_API rdm_result rdm_agent_rollout(rdm_agent *a, rdm_pool *p, rdm_epoch *io);
  * that has begun by act and record is dropped by its update; between horizons, the next rollout,
  * update or first act with RDM_ACT_SAMPLE returns CANCELLED, before anything is collected. */
 RDM_API void rdm_agent_cancel(rdm_agent *a);
-/* Drops the horizon that has begun, and a cancel that waits: from any state back to between epochs.
- * Nothing is learned from what it drops. Episodes that run go on, with what was recorded of
- * them. */
+/* Drops the horizon that has begun, an update in slices, and a cancel that waits: from any state
+ * back to between epochs. The policy learns nothing from what it drops. Episodes that run go on,
+ * with what was recorded of them. */
 RDM_API rdm_result rdm_agent_discard(rdm_agent *a);
 /* Changes a live option. NOT_FOUND, RANGE, or STATE when it is not live. */
 RDM_API rdm_result rdm_agent_set_option(rdm_agent *a, const rdm_option *option);

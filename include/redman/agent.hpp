@@ -36,12 +36,20 @@ class Agent {
     check(rdm_agent_update(get(), last_obs, &e));
     return e;
   }
+  // The same in slices: begin, then slices until one is the last, of which `epoch` (may be null) tells.
+  void update_begin(const float* last_obs) { check(rdm_agent_update_begin(get(), last_obs)); }
+  bool update_slice(int32_t units, rdm_epoch* epoch = nullptr) {
+    int32_t done = 0;
+    check(rdm_agent_update_slice(get(), units, &done, epoch));
+    return done != 0;
+  }
   rdm_epoch rollout(Pool& pool) {
     auto e = sized<rdm_epoch>();
     check(rdm_agent_rollout(get(), pool.get(), &e));
     return e;
   }
   void cancel() noexcept { rdm_agent_cancel(get()); }
+  void discard() { check(rdm_agent_discard(get())); }
   std::string settings() const {
     return text_of(rdm_agent_get_settings, static_cast<const rdm_agent*>(get()));
   }

@@ -175,6 +175,27 @@ TEST(RedmanHpp, AgentLearnsFromAPoolAndItsPolicyActs) {
   agent.act(pool.obs().data(), RDM_ACT_MEAN, by_agent.data());
   for (size_t i = 0; i < by_agent.size(); ++i)
     EXPECT_NEAR(by_policy[i], std::min(1.0f, std::max(-1.0f, by_agent[i])), 1e-5f) << i;
+
+  auto t = redman::sized<rdm_transition>();
+  t.reward = pool.reward().data();
+  t.cost = pool.cost().data();
+  const auto begin = [&] {
+    for (int i = 0; i < 4; ++i) {
+      agent.act(pool.obs().data(), RDM_ACT_SAMPLE, by_agent.data());
+      agent.record(t);
+    }
+    agent.update_begin(pool.obs().data());
+  };
+  auto epoch = redman::sized<rdm_epoch>();
+  begin();
+  int slices = 1;
+  for (; !agent.update_slice(1, &epoch); ++slices) EXPECT_EQ(epoch.epoch, 0);
+  EXPECT_GT(slices, 1);
+  EXPECT_EQ(epoch.epoch, 2);
+  begin();
+  EXPECT_THROW(agent.save(), redman::Error);
+  agent.discard();
+  agent.save();
 }
 
 }  // namespace

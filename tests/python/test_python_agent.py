@@ -117,6 +117,42 @@ class PartsOfARow(unittest.TestCase):
         with self.assertRaises(redman.NotFoundError):
             redman.Agent(obs_dim=3, action_dim=1, num_envs=4, fields=fields, options={"actor_obs": "sped"})
 
+    def test_slices_are_one_update(self):
+        def make():
+            return redman.Agent(obs_dim=3, action_dim=2, num_envs=4, cost_limits=1, seed=3,
+                                options={"hidden": "8", "horizon": 6, "passes": 2, "minibatches": 2})
+
+        def collect(*agents):
+            for _ in range(6):
+                obs, reward, cost = rng.normal(size=(4, 3)), rng.normal(size=4), rng.random((4, 1))
+                for agent in agents:
+                    agent.act(obs)
+                    agent.record(reward, cost)
+            return obs
+
+        rng, one, other = np.random.default_rng(1), make(), make()
+        for _ in range(2):
+            obs = collect(one, other)
+            whole = one.update(obs)
+            before = other.act(obs, "mean")
+            other.update_begin(obs)
+            slices = 1
+            while (epoch := other.update_slice(2)) is None:
+                slices += 1
+                np.testing.assert_array_equal(other.act(obs, "mean"), before)
+                with self.assertRaises(redman.StateError):
+                    other.save()
+            self.assertGreater(slices, 3)
+            np.testing.assert_equal(dict(epoch), dict(whole))
+        self.assertEqual(other.save(), one.save())
+        obs = collect(other)
+        policy = bytes(other.policy())
+        other.update_begin(obs)
+        other.update_slice(5)
+        other.discard()
+        self.assertEqual(bytes(other.policy()), policy)
+        other.save()
+
     def test_costs_that_are_magnitudes(self):
         said = {}
         for signal in ("flag", "raw"):

@@ -2266,8 +2266,10 @@ class rdm_ranks(Structure):
 
     Configs are the same on all ranks but for num_threads, hooks and texts. All of them make the same
     calls of rollout, act with RDM_ACT_SAMPLE, record, update, save with memory,
-    rdm_checkpoint_write: these exchange messages, in one order. Loading does not: each takes its own
-    part. A state that was saved by some ranks goes on with any other number that `blocks` allows.
+    rdm_checkpoint_write: these exchange messages, in one order. Each cuts its updates into slices as
+    it likes, which wait for the others' where they exchange; what ends one is rdm_agent_cancel.
+    Loading exchanges nothing: each takes its own part. A state that was saved by some ranks goes on
+    with any other number that `blocks` allows.
       - CANCELLED: a hook failed (a rank is gone), or rdm_agent_cancel was called on one rank, which
         stops all of them at one place. The handles are good; after a failed hook, what ranks have
         learned may differ: load a state that was saved.
@@ -3973,8 +3975,54 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"a": c_void_p, "last_obs": c_void_p, "io": POINTER(rdm_epoch)},
         {"last_obs": Rows("float32", ("num_envs", "obs_dim"))}, False,
         """Learns from a full horizon; last_obs [num_envs][obs_dim] follows the last record. io may be NULL.
-        CANCELLED after rdm_agent_cancel (the horizon is dropped, full or not), STATE when the horizon is
-        not full.
+        CANCELLED after rdm_agent_cancel: the horizon is dropped, full or not, and the policy is as
+        before. STATE when the horizon is not full.
+        """),
+    "rdm_agent_update_begin": Function(
+        c_int32, {"a": c_void_p, "last_obs": c_void_p},
+        {"last_obs": Rows("float32", ("num_envs", "obs_dim"))}, False,
+        """The same in slices, for who may not wait: a robot at 1 kHz.
+          rdm_agent_update_begin(agent, obs);
+          for (int32_t done = 0; !done;) {
+            wait_for_tick(obs);
+            rdm_agent_act(agent, obs, RDM_ACT_MEAN, action);
+            rdm_agent_update_slice(agent, 1, &done, &e);
+          }
+        begin takes last_obs [num_envs][obs_dim], returns what rdm_agent_update returns before it learns,
+        and takes about as long as an rdm_agent_act. A slice does `units` (> 0) pieces of work; *done
+        becomes 1 with the last one, and io (may be NULL) is filled then. Pieces follow from the data
+        alone, and any slices give the bytes of one rdm_agent_update. The largest piece is one network
+        forth and back, or a trust region's product with it, over 256 rows on each thread, or over 64
+        where a minibatch has no more than 256; or some plain sums over all decisions of the horizon, or
+        over all parameters.
+        Between two slices the policy of before acts with RDM_ACT_MEAN and is what rdm_agent_write_policy
+        writes. Whatever would change the agent or read what is half learned returns STATE: sampled acts,
+        record, rollouts, options, tensors, values, states, checkpoints. rdm_agent_discard, a cancel that
+        the next slice hears (CANCELLED), and rdm_agent_read_state drop the update. The policy is then as
+        it was before; critics, optimisers and multipliers keep what they have learned.
+        """),
+    "rdm_agent_update_slice": Function(
+        c_int32, {"a": c_void_p, "units": c_int32, "done": c_void_p, "io": POINTER(rdm_epoch)},
+        {}, False,
+        """The same in slices, for who may not wait: a robot at 1 kHz.
+          rdm_agent_update_begin(agent, obs);
+          for (int32_t done = 0; !done;) {
+            wait_for_tick(obs);
+            rdm_agent_act(agent, obs, RDM_ACT_MEAN, action);
+            rdm_agent_update_slice(agent, 1, &done, &e);
+          }
+        begin takes last_obs [num_envs][obs_dim], returns what rdm_agent_update returns before it learns,
+        and takes about as long as an rdm_agent_act. A slice does `units` (> 0) pieces of work; *done
+        becomes 1 with the last one, and io (may be NULL) is filled then. Pieces follow from the data
+        alone, and any slices give the bytes of one rdm_agent_update. The largest piece is one network
+        forth and back, or a trust region's product with it, over 256 rows on each thread, or over 64
+        where a minibatch has no more than 256; or some plain sums over all decisions of the horizon, or
+        over all parameters.
+        Between two slices the policy of before acts with RDM_ACT_MEAN and is what rdm_agent_write_policy
+        writes. Whatever would change the agent or read what is half learned returns STATE: sampled acts,
+        record, rollouts, options, tensors, values, states, checkpoints. rdm_agent_discard, a cancel that
+        the next slice hears (CANCELLED), and rdm_agent_read_state drop the update. The policy is then as
+        it was before; critics, optimisers and multipliers keep what they have learned.
         """),
     "rdm_agent_rollout": Function(
         c_int32, {"a": c_void_p, "p": c_void_p, "io": POINTER(rdm_epoch)},
@@ -3996,9 +4044,9 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_agent_discard": Function(
         c_int32, {"a": c_void_p},
         {}, False,
-        """Drops the horizon that has begun, and a cancel that waits: from any state back to between epochs.
-        Nothing is learned from what it drops. Episodes that run go on, with what was recorded of
-        them.
+        """Drops the horizon that has begun, an update in slices, and a cancel that waits: from any state
+        back to between epochs. The policy learns nothing from what it drops. Episodes that run go on,
+        with what was recorded of them.
         """),
     "rdm_agent_set_option": Function(
         c_int32, {"a": c_void_p, "option": POINTER(rdm_option)},

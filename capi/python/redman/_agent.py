@@ -186,6 +186,32 @@ class Agent(Hinted):
             self._run(lib.rdm_agent_update, rows.ctypes.data, byref(epoch))
         return self._epoch(epoch)
 
+    def update_begin(self, last_obs: Any) -> None:
+        """The same in slices, for who has other things to do meanwhile; then update_slice until it gives the epoch.
+
+            agent.update_begin(obs)
+            while (epoch := agent.update_slice()) is None:
+                robot.move(agent.act(robot.look(), "mean"))        # the policy of before
+
+        The bytes are those of one update. Between two slices all that would change the agent is a StateError;
+        discard drops the update.
+        """
+        rows = self._given("rdm_agent_update_begin", "last_obs", last_obs)
+        with self._lock:
+            self._check(lib.rdm_agent_update_begin(self._a, rows.ctypes.data))
+
+    def update_slice(self, units: int = 1) -> Optional[Epoch]:
+        """So many pieces of work more, each a network over 256 rows at most; the epoch when that was the last one."""
+        epoch, done = sized(_abi.rdm_epoch), ctypes.c_int32()
+        with self._lock:
+            self._check(lib.rdm_agent_update_slice(self._a, units, byref(done), byref(epoch)))
+        return self._epoch(epoch) if done.value else None
+
+    def discard(self) -> None:
+        """Drops the horizon that has begun, an update in slices, and a cancel that waits; the policy is as before."""
+        with self._lock:
+            self._check(lib.rdm_agent_discard(self._a))
+
     def rollout(self, pool: Pool) -> Epoch:
         """One epoch natively: act, step and record until the horizon is full, then update.
 
