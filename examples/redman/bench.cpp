@@ -78,6 +78,22 @@ void add_bench(CLI::App& app, Run& run) {
   command->add_option("--rows", act->rows, "observations in a call")->check(positive);
   add_seconds(*command, act->seconds);
   command->callback([&run, act] { run = [act] { return bench_act(*act); }; });
+
+  auto latency = std::make_shared<LatencyFlags>();
+  latency->pool.envs = 8;
+  command =
+      bench->add_subcommand("latency", "The longest that a control loop waits for an act, and for a slice");
+  add_pool_flags(*command, latency->pool, "task");
+  command->add_option("--algo", latency->agent.algo, "algorithm");
+  command->add_option("--calls", latency->calls, "acts of a policy")->check(positive);
+  command->add_option("--ticks", latency->ticks, "acts of an agent with a slice of an update")
+      ->check(positive);
+  command->add_option("--units", latency->units, "pieces of work in a slice")->check(positive);
+  command->add_option("--hz", latency->hz, "ticks per second; 0: without a wait")
+      ->check(at_least(0))
+      ->check(finite_to(1e6));
+  add_set_flag(*command, latency->sets);
+  command->callback([&run, latency] { run = [latency] { return bench_latency(*latency); }; });
 }
 
 }  // namespace tool

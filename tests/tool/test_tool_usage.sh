@@ -91,6 +91,8 @@ json 'task envs threads steps_per_second steps_per_cpu_second bytes_per_env allo
   bench step --envs 2 --seconds 0.05
 json 'samples_per_second allocations_per_update bytes' \
   bench update --obs 8 --act 2 --hidden 16,16 --samples 256 --minibatch 64 --seconds 0.01
+json 'horizon calls policy_act_us ticks ticks_per_update tick_us median p99 p99.9 p99.99 worst' \
+  bench latency --envs 2 --calls 100 --ticks 20 --hz 0 --set horizon=2 --set hidden=8
 json 'actions_per_second' bench act --obs 8 --act 2 --hidden 16,16 --seconds 0.01
 json 'file' plot run --out curve.svg
 json 'file frames' render --to 3 --glb c.glb

@@ -38,6 +38,16 @@ struct ActFlags {
 // rdm_policy_act alone.
 Report bench_act(const ActFlags& flags);
 
+struct LatencyFlags {
+  PoolSettings pool;
+  AgentSettings agent;
+  std::vector<std::string> sets;
+  int32_t calls = 1000000, ticks = 10000, units = 1;
+  double hz = 1000;
+};
+// What a control loop waits for: a policy's act, and an agent's with a slice of an update.
+Report bench_latency(LatencyFlags flags);
+
 struct SeeingFlags {
   PoolSettings pool;
   AgentSettings agent;

@@ -76,17 +76,6 @@ bool handles_costs(const std::string& algo, const redman::Pool& pool) {
   return rdm_agent_config_memory(&config, &bytes) != RDM_OK;
 }
 
-std::string agent_option(const redman::Agent& agent, const std::string& algo, const char* wanted) {
-  const int32_t count = algo_at(find_algo(algo)).num_options;
-  for (int32_t i = 0; i < count; ++i) {
-    const char* key = nullptr;
-    char text[RDM_TEXT_SIZE];
-    redman::check(rdm_agent_option_at(agent.get(), i, &key, text));
-    if (same_name(key, wanted)) return text;
-  }
-  throw Failure("algorithm " + algo + " has no option " + wanted);
-}
-
 }  // namespace
 
 Trainer::Trainer(RunSettings settings, const Ranks* ranks)
