@@ -249,22 +249,37 @@ rdm_result rdm_agent_pretrain(rdm_agent* a, const rdm_points* points, const uint
   });
 }
 
+namespace {
+
+Transition read_transition(const Agent& agent, const rdm_transition* t) {
+  const auto in = read_struct(t, kFirstTransitionSize, rdm_transition{}, "transition");
+  need(in.reward, "transition.reward");
+  if (agent.config().cost_dim > 0) need(in.cost, "transition.cost");
+  Transition x;
+  x.reward = in.reward;
+  x.cost = in.cost;
+  x.terminated = in.terminated;
+  x.truncated = in.truncated;
+  x.valid = in.valid;
+  x.success = in.success;
+  x.final_obs = in.final_obs;
+  x.steps = in.steps;
+  x.status = in.status;
+  x.generation = in.generation;
+  return x;
+}
+
+}  // namespace
+
 rdm_result rdm_agent_record(rdm_agent* a, const rdm_transition* t) {
+  return call_on(a, [&] { a->agent->record(read_transition(*a->agent, t)); });
+}
+
+rdm_result rdm_agent_put(rdm_agent* a, const float* obs, const float* action, const rdm_transition* t) {
   return call_on(a, [&] {
-    const auto in = read_struct(t, kFirstTransitionSize, rdm_transition{}, "transition");
-    need(in.reward, "transition.reward");
-    if (a->agent->config().cost_dim > 0) need(in.cost, "transition.cost");
-    Transition x;
-    x.reward = in.reward;
-    x.cost = in.cost;
-    x.terminated = in.terminated;
-    x.truncated = in.truncated;
-    x.valid = in.valid;
-    x.success = in.success;
-    x.final_obs = in.final_obs;
-    x.steps = in.steps;
-    x.status = in.status;
-    a->agent->record(x);
+    need(obs, "obs");
+    need(action, "action");
+    a->agent->put(obs, action, read_transition(*a->agent, t));
   });
 }
 

@@ -129,11 +129,25 @@ void Agent::set_option(const OptionInput& option) {
 
 void Agent::act(const float* obs, bool sample, float* action, const PointRows& clouds) {
   const FpMode mode;
-  if (sample) need_no_update("act");
-  if (sample && collector_.idle()) check_cancel();
-  if (sample && imitation_.wanted() && !imitation_.has_rows())
-    fail(Code::kState, "act: option imitation needs a recording: rdm_agent_set_recording comes first");
+  if (sample) begin_decision("act");
   collector_.act(obs, sample, action, clouds);
+}
+
+void Agent::begin_decision(const char* call) {
+  need_no_update(call);
+  if (collector_.idle()) check_cancel(), sampler_ = 0;
+  if (imitation_.wanted() && !imitation_.has_rows())
+    fail(Code::kState, "%s: option imitation needs a recording: rdm_agent_set_recording comes first", call);
+}
+
+void Agent::need_generation(const char* call, const Transition& t) {
+  if (t.generation == 0) return;
+  if (nets_.average)
+    fail(Code::kUnsupported, "%s: generation: with option average a policy file is not what samples", call);
+  if (sampler_ == 0) sampler_ = generation();
+  if (t.generation != sampler_)
+    fail(Code::kState, "%s: generation: %llu sampled this, the policy's is %llu", call,
+         static_cast<unsigned long long>(t.generation), static_cast<unsigned long long>(sampler_));
 }
 
 void Agent::values(const float* obs, int32_t rows, float* value, float* cost) const {
@@ -149,7 +163,15 @@ void Agent::values(const float* obs, int32_t rows, float* value, float* cost) co
 void Agent::record(const Transition& t) {
   const FpMode mode;
   need_no_update("record");
+  need_generation("record", t);
   collector_.record(t);
+}
+
+void Agent::put(const float* obs, const float* action, const Transition& t) {
+  const FpMode mode;
+  begin_decision("put");
+  need_generation("put", t);
+  collector_.put(obs, action, t);
 }
 
 void Agent::discard() {

@@ -61,6 +61,9 @@ class Agent {
   void act(const float* obs, bool sample, float* action, const PointRows& clouds = {});
   const PointNetShape& eyes() const { return resolved_.eyes; }
   void record(const Transition& t);
+  // A decision that the policy of this generation took elsewhere, in the place of act and record. As act draws
+  // nothing for it, the streams of noise stay where they are; all else is as if it had acted.
+  void put(const float* obs, const float* action, const Transition& t);
   // As the critics see any rows, in the units of rewards and costs: value [rows] and cost
   // [rows][num_limited()], of the cost columns limited_column(i). Error(kUnsupported) where those are scaled
   // by what was seen.
@@ -97,6 +100,7 @@ class Agent {
   void tensors_changed() {
     clamp_log_std(nets_);
     restart_average(nets_);
+    sampler_ = 0;
   }
 
   // Between epochs; Error(kState) inside a horizon.
@@ -210,6 +214,9 @@ class Agent {
   void need_same_shape(const PolicyView& policy) const;
   uint64_t learned_hash() const;
   void need_idle(const char* call) const;
+  void begin_decision(const char* call);
+  // Error(kState) for what another policy sampled.
+  void need_generation(const char* call, const Transition& t);
   void need_clouds(const DemoRows& demo) const;
   // action_std and entropy: of the policy now, or with std_mode=state as it was on the epoch's data.
   bool spread_on();
@@ -235,6 +242,7 @@ class Agent {
   Job job_;
   Run run_;
   Learned learned_;
+  uint64_t sampler_ = 0;  // generation() in this horizon, 0: nothing has asked yet
   int32_t epoch_ = 0, warm_epochs_ = 0;
   bool raw_costs_ = false;  // option cost_signal
   bool warned_ = false;     // that a limit cannot be judged

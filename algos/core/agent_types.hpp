@@ -58,6 +58,7 @@ struct Transition {
   const float* final_obs = nullptr;  // [num_envs][obs_dim]
   const int32_t* steps = nullptr;    // [num_envs]
   const uint32_t* status = nullptr;  // [num_envs] RDM_STATUS_*
+  uint64_t generation = 0;           // of the policy that sampled; 0: not known
 };
 
 // As the public ones.

@@ -1,5 +1,6 @@
 #include "algos/rollout/collector.hpp"
 
+#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -150,7 +151,7 @@ PointRows Collector::keep_points(const PointRows& clouds, size_t at, int32_t row
 }
 
 void Collector::act_rows(const Workspace& workspace, const float* obs, const PointRows& clouds, int32_t first,
-                         int32_t rows, float* action) {
+                         int32_t rows, float* action, const float* given) {
   Rollout& r = rollout_;
   const size_t at = r.row(r.filled) + static_cast<size_t>(first), dim = r.action_dim;
   float* x = r.obs + at * r.obs_dim;
@@ -168,7 +169,11 @@ void Collector::act_rows(const Workspace& workspace, const float* obs, const Poi
     float* centered = r.action + (at + i) * dim;
     const float *log_std = r.log_std_of(at + i), *std = std_;
     if (nets_->state_std()) kernels().map_exp(log_std, dim, own_std), std = own_std;
-    noise_.sample(first + static_cast<int32_t>(i), mean + i * dim, std, action + i * dim, centered);
+    const int32_t env = first + static_cast<int32_t>(i);
+    if (given)
+      noise_.take(env, mean + i * dim, given + i * dim, centered);
+    else
+      noise_.sample(env, mean + i * dim, std, action + i * dim, centered);
     r.log_prob[at + i] = gaussian_log_prob(mean + i * dim, log_std, centered, static_cast<int32_t>(dim));
   }
 }
@@ -184,39 +189,68 @@ void Collector::check_clouds(const PointRows& clouds) const {
   check_rows("points", clouds.metres, nullptr, rollout_.num_envs, eyes.row_points());
 }
 
+// A row's result does not depend on its batch, so the cut may follow the number of workers.
+int32_t Collector::share(int32_t rows) const {
+  return std::min((rows + workers_->count() - 1) / workers_->count(), resolved_->chunk_rows);
+}
+
+void Collector::need_turn(const char* call) const {
+  if (pending_) fail(Code::kState, "%s: the last sampled actions were not recorded", call);
+  if (missing() == 0) fail(Code::kState, "%s: the horizon is full, update is due", call);
+}
+
 void Collector::act(const float* obs, bool sample, float* action, const PointRows& clouds) {
-  if (sample && pending_) fail(Code::kState, "act: the last sampled actions were not recorded");
-  if (sample && missing() == 0) fail(Code::kState, "act: the horizon is full, update is due");
+  if (sample) need_turn("act");
   const int32_t envs = rollout_.num_envs;
   check_rows("obs", obs, nullptr, envs, rollout_.obs_dim);
   check_clouds(clouds);
-  if (sample) {
-    if (normalize_ && !(obs_freeze_ > 0 && normalizer_.count >= obs_freeze_))
-      merge(normalizer_, obs, nullptr, obs_count_max_);
-    for (size_t j = 0; !nets_->state_std() && j < rollout_.action_dim; ++j) {
-      rollout_.log_std[j] = nets_->log_std()[j] + resolved_->log_share;
-      std_[j] = static_cast<float>(elementary::exp(static_cast<double>(rollout_.log_std[j])));
-    }
-  }
-  // A row's result does not depend on its batch, so the cut may follow the number of workers.
-  const int32_t share = std::min((envs + workers_->count() - 1) / workers_->count(), resolved_->chunk_rows);
-  workers_->sweep(envs, share, [&](const Workspace& workspace, int32_t first, int32_t rows) {
-    const float* x = obs + static_cast<size_t>(first) * rollout_.obs_dim;
-    float* a = action + static_cast<size_t>(first) * rollout_.action_dim;
-    const PointRows seen = clouds.from(nets_->eyes, static_cast<size_t>(first));
-    if (sample)
-      act_rows(workspace, x, seen, first, rows, a);
-    else
-      mean_rows(workspace, x, seen, rows, a);
+  if (sample) return decide(obs, clouds, action, nullptr);
+  workers_->sweep(envs, share(envs), [&](const Workspace& workspace, int32_t first, int32_t rows) {
+    const auto at = static_cast<size_t>(first);
+    mean_rows(workspace, obs + at * rollout_.obs_dim, clouds.from(nets_->eyes, at), rows,
+              action + at * rollout_.action_dim);
   });
-  if (sample) pending_ = true;
+}
+
+void Collector::decide(const float* obs, const PointRows& clouds, float* action, const float* given) {
+  if (normalize_ && !(obs_freeze_ > 0 && normalizer_.count >= obs_freeze_))
+    merge(normalizer_, obs, nullptr, obs_count_max_);
+  for (size_t j = 0; !nets_->state_std() && j < rollout_.action_dim; ++j) {
+    rollout_.log_std[j] = nets_->log_std()[j] + resolved_->log_share;
+    std_[j] = static_cast<float>(elementary::exp(static_cast<double>(rollout_.log_std[j])));
+  }
+  const int32_t envs = rollout_.num_envs;
+  workers_->sweep(envs, share(envs), [&](const Workspace& workspace, int32_t first, int32_t rows) {
+    const auto at = static_cast<size_t>(first), dim = rollout_.action_dim;
+    act_rows(workspace, obs + at * rollout_.obs_dim, clouds.from(nets_->eyes, at), first, rows,
+             action ? action + at * dim : nullptr, given ? given + at * dim : nullptr);
+  });
+  pending_ = true;
+}
+
+void Collector::check_actions(const float* action) const {
+  const size_t dim = rollout_.action_dim;
+  for (size_t i = 0; i < resolved_->num_envs() * dim; ++i)
+    if (!(std::abs(action[i]) <= Noise::kMaxAction))
+      fail(Code::kRange, "action: row %zu, entry %zu is %g, outside [%g, %g]", i / dim, i % dim,
+           static_cast<double>(action[i]), static_cast<double>(-Noise::kMaxAction),
+           static_cast<double>(Noise::kMaxAction));
+}
+
+void Collector::put(const float* obs, const float* action, const Transition& t) {
+  need_turn("put");
+  if (nets_->eyes.points) fail(Code::kUnsupported, "put: the agent's encoder needs points");
+  check_rows("obs", obs, nullptr, rollout_.num_envs, rollout_.obs_dim);
+  check_actions(action);
+  check(t);
+  decide(obs, {}, nullptr, action);
+  follow(t);
 }
 
 void Collector::value_rows(const float* obs, int32_t rows, float* value, float* cost_value) const {
   if (rows < 1) return;
   const size_t dim = resolved_->obs_dim(), costs = static_cast<size_t>(resolved_->num_limited);
-  const int32_t share = std::min((rows + workers_->count() - 1) / workers_->count(), resolved_->chunk_rows);
-  workers_->sweep(rows, share, [&](const Workspace& workspace, int32_t first, int32_t n) {
+  workers_->sweep(rows, share(rows), [&](const Workspace& workspace, int32_t first, int32_t n) {
     const auto at = static_cast<size_t>(first);
     const float* x = normalized(obs + at * dim, n, workspace.obs);
     values(workspace, x, n, value + at, cost_value + at * costs);
@@ -372,6 +406,10 @@ void Collector::record(const Transition& t) {
   if (missing() == 0) fail(Code::kState, "record: the horizon is full, update is due");
   if (!pending_) fail(Code::kState, "record: no sampled act came before");
   check(t);
+  follow(t);
+}
+
+void Collector::follow(const Transition& t) {
   value_truncated(t);
   scale_rewards(t);
   episodes_.tick();

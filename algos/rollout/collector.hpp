@@ -2,6 +2,7 @@
 //
 //   act       x = clip((obs - shift) scale, +-obs_clip), shift and scale of all observations so far, this one
 //             included; mean = actor(x); action = mean + noise (noise.hpp); V and V_c of x for the advantages
+//   put       the same for an action that was sampled elsewhere, and record
 //   record    r_t, c_t and d_t = discount^steps of the decision; at a truncation the value of the final
 //             observation is added, discounted; at a termination costs may be charged on (terminal_cost)
 //   estimate  V of the last observation closes the paths that still run, then gae.hpp
@@ -29,6 +30,9 @@ class Collector {
   // clouds [num_envs], in metres: of an agent with eyes, which no other takes.
   void act(const float* obs, bool sample, float* action, const PointRows& clouds = {});
   void record(const Transition& t);
+  // A decision that was taken elsewhere by this policy: act and record, with its action in the place of a
+  // sample. Changes nothing where it fails on what it is given.
+  void put(const float* obs, const float* action, const Transition& t);
   // What the critics say of any rows obs [rows][obs_dim]: value [rows], cost_value [rows][num_limited].
   void value_rows(const float* obs, int32_t rows, float* value, float* cost_value) const;
   // Decisions still missing in this horizon.
@@ -77,8 +81,12 @@ class Collector {
  private:
   void values(const Workspace& workspace, const float* x, int32_t rows, float* value,
               float* cost_value) const;
+  // A decision for action, or with the actions `given`; the other one is null.
+  void decide(const float* obs, const PointRows& clouds, float* action, const float* given);
   void act_rows(const Workspace& workspace, const float* obs, const PointRows& clouds, int32_t first,
-                int32_t rows, float* action);
+                int32_t rows, float* action, const float* given);
+  void need_turn(const char* call) const;
+  int32_t share(int32_t rows) const;  // of a worker's chunk
   // What a network with std_mode=state gives, taken apart: means, log deviations (null: not wanted).
   void split_head(const float* y, int32_t rows, float* mean, float* log_std) const;
   void mean_rows(const Workspace& workspace, const float* obs, const PointRows& clouds, int32_t rows,
@@ -87,6 +95,8 @@ class Collector {
   // Keeps what is learned from of a row's clouds; what the actor is to see.
   PointRows keep_points(const PointRows& clouds, size_t at, int32_t rows) const;
   void check(const Transition& t) const;
+  void check_actions(const float* action) const;
+  void follow(const Transition& t);
   void value_truncated(const Transition& t);
   void list_rows();
   void scale_rewards(const Transition& t);

@@ -1,5 +1,7 @@
 #include "algos/rollout/noise.hpp"
 
+#include <algorithm>
+
 namespace rdm {
 namespace {
 // Above sigma |z| sqrt(1 - rho^2) / (1 - rho) for sigma <= 1e3 (std_max), |z| < 7 (Stream::normals) and
@@ -28,6 +30,15 @@ void Noise::sample(int32_t env, const float* mean, const float* std, float* acti
     centered[j] = mean[j] + fresh;
     state[j] = offset + fresh;
     action[j] = centered[j] + offset;
+  }
+}
+
+void Noise::take(int32_t env, const float* mean, const float* action, float* centered) {
+  constexpr auto kMost = static_cast<float>(kMaxNoise);
+  float* state = state_ + static_cast<size_t>(env) * static_cast<size_t>(dim_);
+  for (int32_t j = 0; j < dim_; ++j) {
+    centered[j] = action[j] - correlation_ * state[j];
+    state[j] = std::clamp(action[j] - mean[j], -kMost, kMost);
   }
 }
 

@@ -16,6 +16,9 @@ class Noise {
   // Draws for environment env: action = mean + noise, centered = action - offset. All [action_dim].
   // std: of the innovation.
   void sample(int32_t env, const float* mean, const float* std, float* action, float* centered);
+  // Goes on from an action that was drawn elsewhere, within +-kMaxAction, by the same rule: centered likewise.
+  void take(int32_t env, const float* mean, const float* action, float* centered);
+  static constexpr float kMaxAction = 1e5f;
   void end_episode(int32_t env);
   float correlation() const { return correlation_; }
   void visit(StateIo& io);

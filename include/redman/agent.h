@@ -90,6 +90,8 @@ typedef struct rdm_transition { /* what followed the last sampled actions; a row
   const int32_t *steps;       /* [num_envs] control steps in this decision; NULL: action_repeat */
   const uint32_t *status;     /* [num_envs] RDM_STATUS_* of the decision, for the epoch's counts;
                                * NULL: none */
+  uint64_t generation;        /* rdm_policy_info.generation of the policy that sampled; 0: not
+                               * checked */
 } rdm_transition;
 /* STATE unless a sampled act came before, or when the horizon is full. ARGUMENT for a flag that is
  * neither 0 nor 1, a cost that is not finite or below 0, in any row, and for a reward or final_obs
@@ -101,6 +103,21 @@ typedef struct rdm_transition { /* what followed the last sampled actions; a row
  * of the next observation follows, as after a truncation. Option episode_steps sets that length,
  * cost_limit_per_step a limit on the cost per control step, which needs no ends. */
 RDM_API rdm_result rdm_agent_record(rdm_agent *a, const rdm_transition *t);
+/* A decision that was taken elsewhere, by a robot or another process: obs [num_envs][obs_dim],
+ * action [num_envs][action_dim] as the policy of this epoch sampled it, not clipped
+ * (rdm_policy_sample), and what followed. It stands where rdm_agent_act with RDM_ACT_SAMPLE and
+ * rdm_agent_record stand, the two may take turns, and its log-probability and values are computed
+ * here: an agent of the same config and seed learns the same from it as one that acted, but the
+ * streams of noise stay where they are. Rows of one environment are one path, in their order; with
+ * option noise_correlation its noise is taken to go on from decision to decision. Option
+ * normalize_obs goes on counting with each row, as in rdm_agent_act, while a policy file stands
+ * still: obs_freeze ends that.
+ * STATE as for rdm_agent_act, and for a generation that is not the agent's: its data are stale.
+ * RANGE for an action beyond +-1e5, ARGUMENT as for rdm_agent_record; then nothing has changed.
+ * UNSUPPORTED for an agent with option encoder, and for a generation where option average is on: a
+ * policy file is the average then, and not what has to sample. */
+RDM_API rdm_result rdm_agent_put(rdm_agent *a, const float *obs, const float *action,
+                                 const rdm_transition *t);
 
 enum rdm_epoch_flag {          /* of rdm_epoch.flags */
   RDM_EPOCH_NO_EPISODE = 1,        /* no episode has ended so far: ret, cost, length and rates
@@ -180,9 +197,9 @@ RDM_API rdm_result rdm_agent_update(rdm_agent *a, const float *last_obs, rdm_epo
  * over all parameters.
  * Between two slices the policy of before acts with RDM_ACT_MEAN and is what rdm_agent_write_policy
  * writes. Whatever would change the agent or read what is half learned returns STATE: sampled acts,
- * record, rollouts, options, tensors, values, states, checkpoints. rdm_agent_discard, a cancel that
- * the next slice hears (CANCELLED), and rdm_agent_read_state drop the update. The policy is then as
- * it was before; critics, optimisers and multipliers keep what they have learned. */
+ * record, put, rollouts, options, tensors, values, states, checkpoints. rdm_agent_discard, a cancel
+ * that the next slice hears (CANCELLED), and rdm_agent_read_state drop the update. The policy is
+ * then as it was before; critics, optimisers and multipliers keep what they have learned. */
 RDM_API rdm_result rdm_agent_update_begin(rdm_agent *a, const float *last_obs);
 RDM_API rdm_result rdm_agent_update_slice(rdm_agent *a, int32_t units, int32_t *done,
                                           rdm_epoch *io);

@@ -31,6 +31,9 @@ class Agent {
   rdm_agent* get() const { return handle_.get(); }
   void act(const float* obs, int32_t mode, float* action) { check(rdm_agent_act(get(), obs, mode, action)); }
   void record(const rdm_transition& t) { check(rdm_agent_record(get(), &t)); }
+  void put(const float* obs, const float* action, const rdm_transition& t) {
+    check(rdm_agent_put(get(), obs, action, &t));
+  }
   rdm_epoch update(const float* last_obs) {
     auto e = sized<rdm_epoch>();
     check(rdm_agent_update(get(), last_obs, &e));

@@ -20,7 +20,7 @@ extern "C" {
  *                                // e, policy and saved state are the same on each rank
  *
  * Configs are the same on all ranks but for num_threads, hooks and texts. All of them make the same
- * calls of rollout, act with RDM_ACT_SAMPLE, record, update, save with memory,
+ * calls of rollout, act with RDM_ACT_SAMPLE, record, put, update, save with memory,
  * rdm_checkpoint_write: these exchange messages, in one order. Each cuts its updates into slices as
  * it likes, which wait for the others' where they exchange; what ends one is rdm_agent_cancel.
  * Loading exchanges nothing: each takes its own part. A state that was saved by some ranks goes on

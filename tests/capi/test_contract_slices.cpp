@@ -1,4 +1,4 @@
-// Through the C ABI: an update in slices.
+// Through the C ABI: an update in slices, and decisions that were taken elsewhere.
 #include "contract.hpp"
 
 namespace {
@@ -90,6 +90,7 @@ TEST(ContractSlices, WhatGoesOnBetweenThem) {
   const std::string path = testing::TempDir() + "redman_slices.rdm";
   EXPECT_TRUE(refused(rdm_agent_act(a, d.obs, RDM_ACT_SAMPLE, action), a));
   EXPECT_TRUE(refused(rdm_agent_record(a, &d.t), a));
+  EXPECT_TRUE(refused(rdm_agent_put(a, d.obs, d.action, &d.t), a));
   EXPECT_TRUE(refused(rdm_agent_update(a, d.obs, nullptr), a));
   EXPECT_TRUE(refused(rdm_agent_update_begin(a, d.obs), a));
   EXPECT_TRUE(refused(rdm_agent_set_option(a, &rate), a));
@@ -138,4 +139,44 @@ TEST(ContractSlices, ARolloutWaitsForTheUpdate) {
   EXPECT_EQ(rdm_agent_rollout(a, pool, nullptr), RDM_OK) << rdm_last_error();
   rdm_agent_destroy(a);
   rdm_pool_destroy(pool);
+}
+
+// As an agent that acted and one that was told of it; stale data are refused.
+TEST(ContractPut, StandsForActAndRecord) {
+  rdm_agent *actor = make_agent(agent_config()), *fed = make_agent(agent_config());
+  const Decision last(8);
+  rdm_policy* played = nullptr;
+  const auto policy = policy_bytes(actor);
+  ASSERT_EQ(rdm_policy_read(&played, policy.data(), policy.size()), RDM_OK);
+  const auto generation = [&] {
+    auto info = RDM_INIT(rdm_policy_info);
+    EXPECT_EQ(rdm_policy_update_from(played, actor), RDM_OK);
+    EXPECT_EQ(rdm_policy_get_info(played, &info), RDM_OK);
+    return info.generation;
+  };
+  for (uint64_t epoch = 0, before = 1, now = 0; epoch < 2; ++epoch, before = now) {
+    now = generation();
+    for (int h = 0; h < 8; ++h) {
+      Decision d(h);
+      ASSERT_EQ(rdm_agent_act(actor, d.obs, RDM_ACT_SAMPLE, d.action), RDM_OK);
+      ASSERT_EQ(rdm_agent_record(actor, &d.t), RDM_OK);
+      d.t.generation = before;
+      EXPECT_EQ(rdm_agent_put(fed, d.obs, d.action, &d.t), RDM_ERROR_STATE);
+      d.t.generation = h % 2 ? now : 0;
+      ASSERT_EQ(rdm_agent_put(fed, d.obs, d.action, &d.t), RDM_OK) << rdm_last_error();
+    }
+    ASSERT_EQ(rdm_agent_update(actor, last.obs, nullptr), RDM_OK);
+    ASSERT_EQ(rdm_agent_update(fed, last.obs, nullptr), RDM_OK);
+  }
+  EXPECT_EQ(policy_bytes(actor), policy_bytes(fed));
+  rdm_policy_destroy(played);
+  Decision d(0);
+  EXPECT_EQ(rdm_agent_put(fed, nullptr, d.action, &d.t), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_agent_put(fed, d.obs, nullptr, &d.t), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_agent_put(fed, d.obs, d.action, nullptr), RDM_ERROR_ARGUMENT);
+  d.t.cost = nullptr;
+  EXPECT_EQ(rdm_agent_put(fed, d.obs, d.action, &d.t), RDM_ERROR_ARGUMENT);
+  EXPECT_STREQ(rdm_agent_error(fed), "transition.cost is NULL");
+  rdm_agent_destroy(actor);
+  rdm_agent_destroy(fed);
 }

@@ -194,6 +194,9 @@ TEST(RedmanHpp, AgentLearnsFromAPoolAndItsPolicyActs) {
   EXPECT_EQ(epoch.epoch, 2);
   begin();
   EXPECT_THROW(agent.save(), redman::Error);
+  EXPECT_THROW(agent.put(pool.obs().data(), by_agent.data(), t), redman::Error);
+  agent.discard();
+  agent.put(pool.obs().data(), by_agent.data(), t);
   agent.discard();
   agent.save();
 }

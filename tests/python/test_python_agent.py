@@ -153,6 +153,30 @@ class PartsOfARow(unittest.TestCase):
         self.assertEqual(bytes(other.policy()), policy)
         other.save()
 
+    def test_rows_of_elsewhere_are_learned_from_as_own_ones(self):
+        def make(**more):
+            return redman.Agent(obs_dim=3, action_dim=2, num_envs=4, cost_limits=1, seed=3,
+                                options={"hidden": "8", "horizon": 6, "passes": 2, "minibatches": 2, **more})
+
+        rng, actor, fed = np.random.default_rng(1), make(), make()
+        for _ in range(2):
+            generation = actor.policy().info.generation
+            for _ in range(6):
+                obs, reward, cost = rng.normal(size=(4, 3)), rng.normal(size=4), rng.random((4, 1))
+                action = actor.act(obs)
+                actor.record(reward, cost)
+                with self.assertRaises(redman.StateError) as stale:
+                    fed.put(obs, action, reward, cost, generation=generation ^ 1)
+                self.assertIn("generation", str(stale.exception))
+                fed.put(obs, action, reward, cost, generation=generation)
+            np.testing.assert_equal(dict(fed.update(obs)), dict(actor.update(obs)))
+        self.assertEqual(bytes(fed.policy()), bytes(actor.policy()))
+        with self.assertRaises(redman.ArgumentError) as bad:
+            fed.put(obs, action, reward)
+        self.assertIn("put: cost is missing", str(bad.exception))
+        with self.assertRaises(redman.UnsupportedError):
+            make(average=0.5).put(obs, action, reward, cost, generation=generation)
+
     def test_costs_that_are_magnitudes(self):
         said = {}
         for signal in ("flag", "raw"):

@@ -1314,6 +1314,7 @@ class rdm_transition(Structure):
     success: [num_envs] for the statistics; NULL: none
     steps: [num_envs] control steps in this decision; NULL: action_repeat
     status: [num_envs] RDM_STATUS_* of the decision, for the epoch's counts; NULL: none
+    generation: rdm_policy_info.generation of the policy that sampled; 0: not checked
     """
 
     struct_size: int
@@ -1327,6 +1328,7 @@ class rdm_transition(Structure):
     success: int | None
     steps: int | None
     status: int | None
+    generation: int
     _fields_ = [
         ("struct_size", c_uint32),
         ("reserved", c_uint32),
@@ -1339,6 +1341,7 @@ class rdm_transition(Structure):
         ("success", c_void_p),
         ("steps", c_void_p),
         ("status", c_void_p),
+        ("generation", c_uint64),
     ]
 
 
@@ -2265,7 +2268,7 @@ class rdm_ranks(Structure):
                                    // e, policy and saved state are the same on each rank
 
     Configs are the same on all ranks but for num_threads, hooks and texts. All of them make the same
-    calls of rollout, act with RDM_ACT_SAMPLE, record, update, save with memory,
+    calls of rollout, act with RDM_ACT_SAMPLE, record, put, update, save with memory,
     rdm_checkpoint_write: these exchange messages, in one order. Each cuts its updates into slices as
     it likes, which wait for the others' where they exchange; what ends one is rdm_agent_cancel.
     Loading exchanges nothing: each takes its own part. A state that was saved by some ranks goes on
@@ -3971,6 +3974,23 @@ FUNCTIONS: dict[str, Function] = {
         of the next observation follows, as after a truncation. Option episode_steps sets that length,
         cost_limit_per_step a limit on the cost per control step, which needs no ends.
         """),
+    "rdm_agent_put": Function(
+        c_int32, {"a": c_void_p, "obs": c_void_p, "action": c_void_p, "t": POINTER(rdm_transition)},
+        {"obs": Rows("float32", ("num_envs", "obs_dim")), "action": Rows("float32", ("num_envs", "action_dim"))}, False,
+        """A decision that was taken elsewhere, by a robot or another process: obs [num_envs][obs_dim],
+        action [num_envs][action_dim] as the policy of this epoch sampled it, not clipped
+        (rdm_policy_sample), and what followed. It stands where rdm_agent_act with RDM_ACT_SAMPLE and
+        rdm_agent_record stand, the two may take turns, and its log-probability and values are computed
+        here: an agent of the same config and seed learns the same from it as one that acted, but the
+        streams of noise stay where they are. Rows of one environment are one path, in their order; with
+        option noise_correlation its noise is taken to go on from decision to decision. Option
+        normalize_obs goes on counting with each row, as in rdm_agent_act, while a policy file stands
+        still: obs_freeze ends that.
+        STATE as for rdm_agent_act, and for a generation that is not the agent's: its data are stale.
+        RANGE for an action beyond +-1e5, ARGUMENT as for rdm_agent_record; then nothing has changed.
+        UNSUPPORTED for an agent with option encoder, and for a generation where option average is on: a
+        policy file is the average then, and not what has to sample.
+        """),
     "rdm_agent_update": Function(
         c_int32, {"a": c_void_p, "last_obs": c_void_p, "io": POINTER(rdm_epoch)},
         {"last_obs": Rows("float32", ("num_envs", "obs_dim"))}, False,
@@ -3997,9 +4017,9 @@ FUNCTIONS: dict[str, Function] = {
         over all parameters.
         Between two slices the policy of before acts with RDM_ACT_MEAN and is what rdm_agent_write_policy
         writes. Whatever would change the agent or read what is half learned returns STATE: sampled acts,
-        record, rollouts, options, tensors, values, states, checkpoints. rdm_agent_discard, a cancel that
-        the next slice hears (CANCELLED), and rdm_agent_read_state drop the update. The policy is then as
-        it was before; critics, optimisers and multipliers keep what they have learned.
+        record, put, rollouts, options, tensors, values, states, checkpoints. rdm_agent_discard, a cancel
+        that the next slice hears (CANCELLED), and rdm_agent_read_state drop the update. The policy is
+        then as it was before; critics, optimisers and multipliers keep what they have learned.
         """),
     "rdm_agent_update_slice": Function(
         c_int32, {"a": c_void_p, "units": c_int32, "done": c_void_p, "io": POINTER(rdm_epoch)},
@@ -4020,9 +4040,9 @@ FUNCTIONS: dict[str, Function] = {
         over all parameters.
         Between two slices the policy of before acts with RDM_ACT_MEAN and is what rdm_agent_write_policy
         writes. Whatever would change the agent or read what is half learned returns STATE: sampled acts,
-        record, rollouts, options, tensors, values, states, checkpoints. rdm_agent_discard, a cancel that
-        the next slice hears (CANCELLED), and rdm_agent_read_state drop the update. The policy is then as
-        it was before; critics, optimisers and multipliers keep what they have learned.
+        record, put, rollouts, options, tensors, values, states, checkpoints. rdm_agent_discard, a cancel
+        that the next slice hears (CANCELLED), and rdm_agent_read_state drop the update. The policy is
+        then as it was before; critics, optimisers and multipliers keep what they have learned.
         """),
     "rdm_agent_rollout": Function(
         c_int32, {"a": c_void_p, "p": c_void_p, "io": POINTER(rdm_epoch)},

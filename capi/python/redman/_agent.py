@@ -164,19 +164,42 @@ class Agent(Hinted):
 
         reward and cost are sums over the decision, final_obs is read where truncated, steps are control steps.
         """
-        if cost is None and self.cost_dim:
-            raise ArgumentError(f"record: cost is missing: [{self.num_envs}][{self.cost_dim}], 0 where there was none; an "
+        transition, kept = self._transition("record", reward=reward, cost=cost, terminated=terminated,
+                                            truncated=truncated, final_obs=final_obs, valid=valid, success=success,
+                                            steps=steps)
+        with self._lock:
+            self._check(lib.rdm_agent_record(self._a, byref(transition)))
+        del kept
+
+    def put(self, obs: Any, action: Any, reward: Any, cost: Any = None, terminated: Any = None, truncated: Any = None,
+            final_obs: Any = None, valid: Any = None, success: Any = None, steps: Any = None,
+            generation: int = 0) -> None:
+        """A decision that was taken elsewhere, in the place of act and record: obs, the actions that the policy of this
+        epoch sampled for them, not clipped, and what followed, as record takes it.
+
+        generation: of that policy, as its file says; StateError when it is not the agent's any more. 0: not checked.
+        """
+        rows, actions = self._given("rdm_agent_put", "obs", obs), self._given("rdm_agent_put", "action", action)
+        transition, kept = self._transition("put", reward=reward, cost=cost, terminated=terminated,
+                                            truncated=truncated, final_obs=final_obs, valid=valid, success=success,
+                                            steps=steps)
+        transition.generation = generation
+        with self._lock:
+            self._check(lib.rdm_agent_put(self._a, rows.ctypes.data, actions.ctypes.data, byref(transition)))
+        del kept
+
+    def _transition(self, call: str, **said: Any) -> tuple[Any, dict[str, Any]]:
+        """The struct, and the arrays that it points to."""
+        if said["cost"] is None and self.cost_dim:
+            raise ArgumentError(f"{call}: cost is missing: [{self.num_envs}][{self.cost_dim}], 0 where there was none; an "
                                 "agent without costs is made with cost_dim=0")
-        said = {"reward": reward, "cost": cost, "terminated": terminated, "truncated": truncated,
-                "final_obs": final_obs, "valid": valid, "success": success, "steps": steps}
         table = _abi.ROWS["rdm_transition"]
         rows = {name: given(value, table[name], self._lengths, name)
                 for name, value in said.items() if value is not None}
         transition = sized(_abi.rdm_transition)
         for name, array in rows.items():
             setattr(transition, name, array.ctypes.data)
-        with self._lock:
-            self._check(lib.rdm_agent_record(self._a, byref(transition)))
+        return transition, rows
 
     def update(self, last_obs: Any) -> Epoch:
         """Learns from a full horizon; last_obs follows the last record."""
