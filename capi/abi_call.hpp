@@ -72,6 +72,13 @@ const char* name_of(Tag tag);  // "pool"; NULL for what is no tag
 inline void need(const void* p, const char* name) {
   if (!p) fail(Code::kArgument, "%s is NULL", name);
 }
+// Of (out, capacity, count): one that memory cannot have was a negative number.
+template <class T>
+void need_room(const T* out, size_t capacity, const char* name) {
+  if (capacity > SIZE_MAX / 2 / sizeof(T))
+    fail(Code::kRange, "capacity: %zu is more than memory has", capacity);
+  if (capacity > 0) need(out, name);
+}
 template <class Handle>
 bool is_handle(const Handle* h) {
   return h && h->tag == Handle::kTag;

@@ -1,5 +1,7 @@
 // Looking into a world: shapes, poses, contacts, pictures.
 #include "capi/handles.hpp"
+#include "capi/pose.hpp"
+#include "redman/deprecated.h"
 
 #if RDM_WITH_SIM
 #include <cmath>
@@ -64,29 +66,37 @@ rdm_result rdm_pool_get_hull(const rdm_pool* p, int32_t i, float* points, int32_
   });
 }
 
+rdm_result rdm_pool_get_poses(const rdm_pool* p, int32_t env, rdm_pose* poses) {
+  return call_on(p, [&] {
+    const World& world = world_of(p, env);
+    need(poses, "poses");
+    const auto count = static_cast<int32_t>(world.scene().shapes.size());
+    for (int32_t i = 0; i < count; ++i) poses[i] = to_abi(world.shape_pose(i));
+  });
+}
+
+// Of 0.1, which has no memory for doubles; deprecated.h says why it is a function of its own.
 rdm_result rdm_pool_poses(const rdm_pool* p, int32_t env, float* pose) {
   return call_on(p, [&] {
     const World& world = world_of(p, env);
     need(pose, "pose");
     const auto count = static_cast<int32_t>(world.scene().shapes.size());
     for (int32_t i = 0; i < count; ++i, pose += 7) {
-      const Pose X = world.shape_pose(i);
-      to_floats(X.p, pose);
-      const double q[4] = {X.q.x, X.q.y, X.q.z, X.q.w};
-      for (int k = 0; k < 4; ++k) pose[3 + k] = static_cast<float>(q[k]);
+      const rdm_pose X = to_abi(world.shape_pose(i));
+      std::transform(X.p, X.p + 3, pose, [](double v) { return static_cast<float>(v); });
+      std::transform(X.q, X.q + 4, pose + 3, [](double v) { return static_cast<float>(v); });
     }
   });
 }
 
-rdm_result rdm_pool_contacts(const rdm_pool* p, int32_t env, rdm_contact* out, int32_t capacity,
-                             int32_t* count) {
+rdm_result rdm_pool_get_contacts(const rdm_pool* p, int32_t env, rdm_contact* out, size_t capacity,
+                                 size_t* count) {
   return call_on(p, [&] {
     const World& world = world_of(p, env);
     need(count, "count");
-    if (capacity < 0) fail(Code::kRange, "capacity: %d is negative", capacity);
-    if (capacity > 0) need(out, "out");
-    *count = world.num_contacts();
-    for (int32_t i = 0; i < std::min(capacity, *count); ++i) {
+    need_room(out, capacity, "out");
+    *count = static_cast<size_t>(world.num_contacts());
+    for (size_t i = 0; i < std::min(capacity, *count); ++i) {
       const Contact& c = world.contacts()[i];
       rdm_contact o{};
       o.shape_a = c.shape_a;
@@ -163,5 +173,9 @@ rdm_result rdm_pool_push(rdm_pool* p, int32_t env, int32_t shape, const float fo
     else
       world.push_link(s.index, f, world.link(s.index).X * world.scene().link(s.index).inertia.com);
   });
+}
+#elif RDM_STUBS
+rdm_result rdm_pool_poses(const rdm_pool* p, int32_t env, float*) {
+  return rdm_pool_get_poses(p, env, nullptr);
 }
 #endif

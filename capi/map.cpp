@@ -3,6 +3,7 @@
 
 #include "base/file.hpp"
 #include "capi/handles.hpp"
+#include "capi/pose.hpp"
 
 #if RDM_WITH_SIM
 #include "base/text.hpp"
@@ -45,16 +46,6 @@ Vec3 to_vec(const float v[3]) {
 }
 void to_floats(const Vec3& v, float out[3]) {
   for (int k = 0; k < 3; ++k) out[k] = static_cast<float>(v[k]);
-}
-
-// (x, y, z, w) across the ABI; turned to unit length.
-Pose to_pose(const float v[7]) {
-  const Quat q{v[6], v[3], v[4], v[5]};
-  const double square = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
-  const Vec3 p = to_vec(v);
-  if (!finite(p) || !(std::abs(square - 1) < 0.01))
-    fail(Code::kArgument, "pose: not finite, or its quaternion is not of unit length");
-  return {p, normalized(q)};
 }
 
 void need_points(const float* points, size_t count, const char* name) {
@@ -198,15 +189,15 @@ rdm_result rdm_map_box(const rdm_map* m, const float low[3], const float high[3]
   });
 }
 
-rdm_result rdm_map_meets(const rdm_map* m, const float pose[7], const float half[3], int32_t* meets) {
+rdm_result rdm_map_meets(const rdm_map* m, const rdm_pose* pose, const float half[3], int32_t* meets) {
   return call_on(m, [&] {
-    need(pose, "pose");
+    const Pose at = need_pose(pose, "pose");
     need(half, "half");
     need(meets, "meets");
     for (int k = 0; k < 3; ++k)
       if (!(half[k] >= 0 && half[k] < 1e6f))
         fail(Code::kRange, "half[%d]: %g is outside [0, 1e6)", k, static_cast<double>(half[k]));
-    *meets = m->map->meets_box(to_pose(pose), to_vec(half));
+    *meets = m->map->meets_box(at, to_vec(half));
   });
 }
 
@@ -235,16 +226,16 @@ rdm_result rdm_map_distance(const rdm_map* m, const float* points, size_t count,
   });
 }
 
-rdm_result rdm_map_grid(const rdm_map* m, const float pose[7], const int32_t n[3], float side, int8_t* out) {
+rdm_result rdm_map_grid(const rdm_map* m, const rdm_pose* pose, const int32_t n[3], float side, int8_t* out) {
   return call_on(m, [&] {
-    need(pose, "pose");
+    const Pose at = need_pose(pose, "pose");
     need(n, "n");
     need(out, "out");
     for (int k = 0; k < 3; ++k)
       if (n[k] < 1 || n[k] > 1024) fail(Code::kRange, "n[%d]: %d is outside [1, 1024]", k, n[k]);
     if (!(side > 0 && side <= 1e3f))
       fail(Code::kRange, "side: %g is outside (0, 1000]", static_cast<double>(side));
-    m->map->grid(to_pose(pose), n, side, out);
+    m->map->grid(at, n, side, out);
   });
 }
 

@@ -1,5 +1,6 @@
 // rdm_object_*: the catalogue of objects, and those that a host describes.
 #include "capi/handles.hpp"
+#include "capi/pose.hpp"
 
 #if RDM_WITH_SIM
 #include "base/lasting.hpp"
@@ -26,9 +27,9 @@ ObjectShape shape_of(const rdm_shape_def& in, int32_t i, Vector<Vec3>* points) {
   ObjectShape s{};
   s.kind = static_cast<ShapeKind>(in.kind);
   s.size = {in.size[0], in.size[1], in.size[2]};
-  s.p = {in.p[0], in.p[1], in.p[2]};
-  const bool none = in.q[0] == 0 && in.q[1] == 0 && in.q[2] == 0 && in.q[3] == 0;
-  if (!none) s.q = {in.q[3], in.q[0], in.q[1], in.q[2]};
+  const Pose X = from_abi(in.pose);
+  s.p = X.p;
+  s.q = X.q;
   const bool grey = !(in.color[0] || in.color[1] || in.color[2] || in.color[3]);
   for (int k = 0; k < 3; ++k) s.color[k] = grey ? kGrey : in.color[k];
   s.collides = in.seen_only == 0;
@@ -114,15 +115,13 @@ rdm_result rdm_object_shape_at(int32_t object, int32_t i, rdm_shape_def* out) {
     const ObjectRef ref(object);
     need_index(i, ref->shapes.count, "i");
     const ObjectShape& s = ref->shapes[i];
-    const Vec3 p = s.p - object_inertia(*ref).com;
-    const Quat q = normalized(s.q);
     rdm_shape_def o{};
     o.kind = static_cast<int32_t>(s.kind);
     static_assert(sizeof(Vec3) == 3 * sizeof(double));
     o.points = s.points.count ? &s.points[0].x : nullptr;
     o.num_points = s.points.count;
-    for (int k = 0; k < 3; ++k) o.size[k] = s.size[k], o.p[k] = p[k];
-    o.q[0] = q.x, o.q[1] = q.y, o.q[2] = q.z, o.q[3] = q.w;
+    put(s.size, o.size);
+    o.pose = to_abi({s.p - object_inertia(*ref).com, normalized(s.q)});
     std::copy_n(s.color, 3, o.color);
     o.color[3] = 255;
     o.seen_only = !s.collides;

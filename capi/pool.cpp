@@ -351,24 +351,17 @@ void check_env(const rdm_pool* p, int32_t env, bool all_allowed) {
 }
 }  // namespace
 
-rdm_result rdm_pool_state_size(const rdm_pool* p, int32_t env, size_t* bytes) {
-  return call_on(p, [&] {
-    check_env(p, env, true);
-    need(bytes, "bytes");
-    *bytes = p->pool->state_size(env);
-  });
-}
-
 rdm_result rdm_pool_write_state(const rdm_pool* p, int32_t env, void* bytes, size_t capacity, size_t* size) {
   return call_on(p, [&] {
     check_env(p, env, true);
-    need(bytes, "bytes");
     need(size, "size");
     const size_t n = p->pool->state_size(env);
-    if (capacity < n) fail(Code::kRange, "capacity: %zu bytes, %zu are needed", capacity, n);
-    Writer out(bytes, capacity);
-    p->pool->get_state(env, out);
-    *size = out.size();
+    if (bytes) {
+      if (capacity < n) fail(Code::kRange, "capacity: %zu bytes, %zu are needed", capacity, n);
+      Writer out(bytes, capacity);
+      p->pool->get_state(env, out);
+    }
+    *size = n;
   });
 }
 

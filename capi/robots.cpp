@@ -1,5 +1,6 @@
 // rdm_robot_*: robots that a host describes, and what it can ask of any.
 #include "capi/handles.hpp"
+#include "capi/pose.hpp"
 
 #if RDM_WITH_SIM
 #include <cmath>
@@ -22,28 +23,10 @@ namespace {
 constexpr size_t kFirstSize = sizeof(rdm_robot_def);
 constexpr int32_t kMostRows = 4096;
 
-Vec3 vec(const double v[3]) {
-  return {v[0], v[1], v[2]};
-}
-void put(const Vec3& v, double* out) {
-  for (int k = 0; k < 3; ++k) out[k] = v[k];
-}
-// (x, y, z, w) across the ABI.
-Quat quat(const double q[4]) {
-  return {q[3], q[0], q[1], q[2]};
-}
-void put(const Quat& q, double* out) {
-  out[0] = q.x, out[1] = q.y, out[2] = q.z, out[3] = q.w;
-}
-void put(const Pose& X, double* out) {
-  put(X.p, out);
-  put(X.q, out + 3);
-}
-
 rdm_robot_def default_def() {
   rdm_robot_def d{};
   d.mirror = -1;
-  d.mount_q[3] = d.flange_q[3] = 1;
+  d.mount.q[3] = d.flange.q[3] = 1;
   d.flange_link = d.palm_link = RDM_LINK_NONE;
   d.palm_normal[1] = -1;
   d.palm_fingers[2] = 1;
@@ -60,8 +43,9 @@ RobotLink link_of(const rdm_robot_link& in) {
   l.name = in.name;
   l.joint = in.joint;
   l.parent = in.parent;
-  l.p_PL = vec(in.p);
-  l.q_PL = quat(in.q);
+  const Pose X_PL = from_abi(in.pose);
+  l.p_PL = X_PL.p;
+  l.q_PL = X_PL.q;
   l.mass = in.mass;
   l.com = vec(in.com);
   std::copy_n(in.moment, 6, l.moment);
@@ -80,7 +64,8 @@ RobotLink link_of(const rdm_robot_link& in) {
 
 RobotShape shape_of(const rdm_robot_shape& in) {
   check_reserved(in, "def.shapes");
-  RobotShape s{in.link, in.name, static_cast<ShapeKind>(in.kind), vec(in.size), vec(in.p), quat(in.q), {}};
+  const Pose X_LS = from_abi(in.pose);
+  RobotShape s{in.link, in.name, static_cast<ShapeKind>(in.kind), vec(in.size), X_LS.p, X_LS.q, {}};
   std::copy_n(in.color, 3, s.color);
   return s;
 }
@@ -171,9 +156,9 @@ RobotCopy rdm::capi::robot_from(const rdm_robot_def* def) {
   o.root.mass = in.root_mass;
   o.root.com = vec(in.root_com);
   std::copy_n(in.root_moment, 6, o.root.moment);
-  o.X_RM = {vec(in.mount_p), quat(in.mount_q)};
+  o.X_RM = from_abi(in.mount);
   o.flange = in.flange_link;
-  o.X_LF = {vec(in.flange_p), quat(in.flange_q)};
+  o.X_LF = from_abi(in.flange);
   o.palm = in.palm_link;
   o.p_palm = vec(in.palm_p);
   o.n_palm = vec(in.palm_normal);
@@ -243,10 +228,8 @@ rdm_result rdm_robot_get_def(int32_t robot, rdm_robot_def* io) {
     d.root_mass = r.root.mass;
     put(r.root.com, d.root_com);
     std::copy_n(r.root.moment, 6, d.root_moment);
-    put(r.X_RM.p, d.mount_p);
-    put(r.X_RM.q, d.mount_q);
-    put(r.X_LF.p, d.flange_p);
-    put(r.X_LF.q, d.flange_q);
+    d.mount = to_abi(r.X_RM);
+    d.flange = to_abi(r.X_LF);
     d.flange_link = r.flange;
     d.palm_link = r.palm;
     put(r.p_palm, d.palm_p);
@@ -267,8 +250,7 @@ rdm_result rdm_robot_link_at(int32_t robot, int32_t i, rdm_robot_link* out) {
     o.joint = lasting(l.joint);
     o.parent = l.parent;
     o.kind = static_cast<int32_t>(l.kind);
-    put(l.p_PL, o.p);
-    put(link_frame(l).q, o.q);
+    o.pose = to_abi({l.p_PL, link_frame(l).q});
     put(l.axis, o.axis);
     o.lower = l.lower;
     o.upper = l.upper;
@@ -296,8 +278,7 @@ rdm_result rdm_robot_shape_at(int32_t robot, int32_t i, rdm_robot_shape* out) {
     o.link = s.link;
     o.kind = static_cast<int32_t>(s.kind);
     put(s.size, o.size);
-    put(s.p, o.p);
-    put(s.q, o.q);
+    o.pose = to_abi({s.p, s.q});
     std::copy_n(s.color, 3, o.color);
     o.color[3] = 255;
     *out = o;
@@ -365,40 +346,37 @@ rdm_result rdm_robot_get_postures(int32_t robot, int32_t* commands, double* home
   });
 }
 
-rdm_result rdm_robot_kinematics(int32_t robot, const double* q, double* poses, double* flange, double* tips,
-                                double* palm) {
+rdm_result rdm_robot_kinematics(int32_t robot, const double* q, rdm_pose* links, rdm_pose* flange,
+                                double* tips, rdm_pose* palm) {
   return call([&] {
-    need(poses, "poses");
+    need(links, "links");
     const RobotRef ref(robot);
     const Robot& r = *ref;
     need_finite(q, r.links.count, "q");
     Pose X_RL[kMaxRobotLinks];
     link_poses(r, q, X_RL);
-    for (int32_t i = 0; i < r.links.count; ++i) put(X_RL[i], poses + 7 * i);
+    for (int32_t i = 0; i < r.links.count; ++i) links[i] = to_abi(X_RL[i]);
     if (flange) {
       if (r.flange == kNoLink) fail(Code::kUnsupported, "robot %s has no flange", r.name);
-      put(flange_pose(r, q), flange);
+      *flange = to_abi(flange_pose(r, q));
     }
     for (int32_t i = 0; tips && i < r.tips.count; ++i)
       put(X_RL[r.tips[i].link] * r.tips[i].p_L, tips + 3 * i);
     if (palm) {
       if (r.palm == kNoLink) fail(Code::kUnsupported, "robot %s has no palm", r.name);
-      put(palm_frame(r, q), palm);
+      *palm = to_abi(palm_frame(r, q));
     }
   });
 }
 
-rdm_result rdm_robot_reach(int32_t robot, const double pose[7], double* q, int32_t* found) {
+rdm_result rdm_robot_reach(int32_t robot, const rdm_pose* flange, double* q, int32_t* found) {
   return call([&] {
     need(found, "found");
     const RobotRef ref(robot);
     if (ref->flange == kNoLink) fail(Code::kUnsupported, "robot %s has no flange", ref->name);
-    need_finite(pose, 7, "pose");
+    const Pose goal = need_pose(flange, "flange");
     need_finite(q, ref->links.count, "q");
-    const Quat turn = quat(pose + 3);
-    const double square = turn.w * turn.w + turn.x * turn.x + turn.y * turn.y + turn.z * turn.z;
-    if (std::abs(square - 1) > 0.01) fail(Code::kArgument, "pose: its quaternion is not of unit length");
-    *found = solve_reach(*ref, {vec(pose), normalized(turn)}, q);
+    *found = solve_reach(*ref, goal, q);
   });
 }
 #endif

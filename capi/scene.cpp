@@ -5,6 +5,7 @@
 #include "base/names.hpp"
 #include "base/text.hpp"
 #include "capi/own_task.hpp"
+#include "capi/pose.hpp"
 
 #if RDM_WITH_SIM
 #include "env/options/simulation.hpp"
@@ -22,15 +23,6 @@ constexpr size_t kFirstBodySize = sizeof(rdm_body_def), kFirstRobotSize = sizeof
 constexpr int32_t kMostShapes = 256, kMostThings = 1024;
 constexpr double kCentred = 1e-6;   // m
 constexpr double kNoFriction = -1;  // of a material that no object brought
-
-Vec3 vec(const double v[3]) {
-  return {v[0], v[1], v[2]};
-}
-// (x, y, z, w) across the ABI; all 0 is no rotation.
-Quat quat(const double q[4]) {
-  if (q[0] == 0 && q[1] == 0 && q[2] == 0 && q[3] == 0) return {};
-  return {q[3], q[0], q[1], q[2]};
-}
 
 void need_whole(const rdm_scene* scene) {
   need_handle(scene);
@@ -100,7 +92,7 @@ ShapeDef read_shape(const rdm_scene& scene, const rdm_shape_def& in, const char*
   s.name = name;
   s.material = find_material(scene, in.material);
   s.kind = static_cast<ShapeKind>(in.kind);
-  s.X_LS = {vec(in.p), quat(in.q)};
+  s.X_LS = from_abi(in.pose);
   s.collides = in.seen_only == 0;
   if (in.color[0] || in.color[1] || in.color[2] || in.color[3]) std::copy_n(in.color, 3, s.color);
   if (in.kind != RDM_SHAPE_HULL) {
@@ -408,7 +400,7 @@ rdm_result rdm_scene_robot_init(rdm_scene_robot* robot, size_t size) {
   return call_inside([&] {
     rdm_scene_robot d{};
     d.robot = -1;
-    d.q[3] = 1;
+    d.pose.q[3] = 1;
     d.filled = 1;
     init_struct(robot, size, kFirstRobotSize, d, "robot");
   });
@@ -448,7 +440,7 @@ rdm_result rdm_scene_add_robot(rdm_scene* scene, const rdm_scene_robot* robot, i
     char prefix[kNameSize + 1];
     std::snprintf(prefix, sizeof prefix, "%s_", in.name);
     ArticulationDef def =
-        make_articulation(r, in.left ? Side::kLeft : Side::kRight, {vec(in.p), quat(in.q)}, prefix);
+        make_articulation(r, in.left ? Side::kLeft : Side::kRight, from_abi(in.pose), prefix);
     def.name = in.name;
     def.free_base = in.free_base != 0;
     def.base_damping = in.base_damping;
@@ -477,7 +469,7 @@ rdm_result rdm_scene_add_body(rdm_scene* scene, const rdm_body_def* body, int32_
       fail(Code::kRange, "body %s: mass %g is not above 0 and up to 1e6", in.name, in.mass);
     BodyDef b;
     b.name = in.name;
-    b.X_WB = {vec(in.p), quat(in.q)};
+    b.X_WB = from_abi(in.pose);
     b.linear_damping = in.linear_damping;
     b.angular_damping = in.angular_damping;
     b.gravity = in.weightless == 0;
@@ -495,20 +487,18 @@ rdm_result rdm_scene_add_body(rdm_scene* scene, const rdm_body_def* body, int32_
   });
 }
 
-rdm_result rdm_scene_add_object(rdm_scene* scene, int32_t object, const char* name, const double p[3],
-                                const double q[4], double scale, int32_t* index) {
+rdm_result rdm_scene_add_object(rdm_scene* scene, int32_t object, const char* name, const rdm_pose* pose,
+                                double scale, int32_t* index) {
   return call_inside([&] {
     need_open(scene);
     const ObjectRef ref(object);
     need_name(name, "name");
     need_new_name(*scene, name);
-    need(p, "p");
-    need(q, "q");
+    need(pose, "pose");
     if (!(scale >= 0.05 && scale <= 20)) fail(Code::kRange, "scale: %g is outside [0.05, 20]", scale);
     if (scene->def.bodies.size() == kMostThings)
       fail(Code::kRange, "body %s: more than %d", name, kMostThings);
-    const Pose X_WB{vec(p), quat(q)};
-    BodyDef body = make_object_body(*ref, name, X_WB, 0, scale, 0);
+    BodyDef body = make_object_body(*ref, name, from_abi(*pose), 0, scale, 0);
     scene->def.bodies.reserve(scene->def.bodies.size() + 1);
     const int32_t material = material_of(scene, ref->material);  // nothing fails behind it
     for (ShapeDef& s : body.shapes) s.material = material;

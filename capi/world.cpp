@@ -3,6 +3,7 @@
 
 #include "base/bit_cast.hpp"
 #include "capi/own_task.hpp"
+#include "capi/pose.hpp"
 #if RDM_WITH_SIM
 #include "physics/gravity_torques.hpp"
 #endif
@@ -13,19 +14,8 @@ using namespace rdm::capi;
 
 namespace {
 
-Vec3 vec(const double v[3]) {
-  return {v[0], v[1], v[2]};
-}
-void put(const Vec3& v, double* out) {
-  out[0] = v.x, out[1] = v.y, out[2] = v.z;
-}
-// (x, y, z, w) across the ABI.
-void put(const Quat& q, double* out) {
-  out[0] = q.x, out[1] = q.y, out[2] = q.z, out[3] = q.w;
-}
-void put(const Motion& m, rdm_motion* out) {
-  put(m.X.p, out->p);
-  put(m.X.q, out->q);
+void put_motion(const Motion& m, rdm_motion* out) {
+  out->pose = to_abi(m.X);
   put(m.v, out->v);
   put(m.w, out->w);
 }
@@ -45,7 +35,7 @@ World& change(rdm_world* world) {
 
 Motion motion_from(const rdm_motion* in) {
   need(in, "motion");
-  return {{vec(in->p), {in->q[3], in->q[0], in->q[1], in->q[2]}}, vec(in->v), vec(in->w)};
+  return {from_abi(in->pose), vec(in->v), vec(in->w)};
 }
 
 Vec3 need_vector(const double* v, const char* name) {
@@ -149,7 +139,7 @@ rdm_result rdm_world_get_link(const rdm_world* world, int32_t link, rdm_motion* 
     const World& w = look(world);
     need(out, "out");
     need_index(link, w.scene().num_links, "link");
-    put(w.link(link), out);
+    put_motion(w.link(link), out);
   });
 }
 
@@ -158,7 +148,7 @@ rdm_result rdm_world_get_base(const rdm_world* world, int32_t robot, rdm_motion*
     const World& w = look(world);
     need(out, "out");
     need_robot(w, robot);
-    put(w.base(robot), out);
+    put_motion(w.base(robot), out);
   });
 }
 
@@ -167,18 +157,16 @@ rdm_result rdm_world_get_body(const rdm_world* world, int32_t body, rdm_motion* 
     const World& w = look(world);
     need(out, "out");
     need_index(body, w.scene().num_bodies, "body");
-    put(w.body(body), out);
+    put_motion(w.body(body), out);
   });
 }
 
-rdm_result rdm_world_get_shape(const rdm_world* world, int32_t shape, double pose[7]) {
+rdm_result rdm_world_get_shape(const rdm_world* world, int32_t shape, rdm_pose* out) {
   return call_inside([&] {
     const World& w = look(world);
-    need(pose, "pose");
+    need(out, "out");
     need_index(shape, static_cast<int64_t>(w.scene().shapes.size()), "shape");
-    const Pose X = w.shape_pose(shape);
-    put(X.p, pose);
-    put(X.q, pose + 3);
+    *out = to_abi(w.shape_pose(shape));
   });
 }
 

@@ -32,7 +32,7 @@ int main(int argc, char** argv) {
   const char* const movable[] = {"right", "left", "broom", "trash", "ground", NULL};
   /* the broom's head, 0.5 m wide, half way down the room: along the middle, and half a metre to the left */
   const float half[3] = {0.25f, 0.05f, 0.3f};
-  const float plans[2][7] = {{0, -1.6f, 0.3f, 0, 0, 0, 1}, {-0.5f, -1.6f, 0.3f, 0, 0, 0, 1}};
+  const rdm_pose plans[2] = {{.p = {0, -1.6, 0.3}}, {.p = {-0.5, -1.6, 0.3}}};
   int32_t skip[128], meets;
   uint64_t dropped = 0;
   rdm_pool_config pool_config;
@@ -70,10 +70,12 @@ int main(int argc, char** argv) {
   printf("map: %llu nodes, %llu kB, %llu voxels dropped\n", (unsigned long long)info.nodes,
          (unsigned long long)info.bytes / 1000, (unsigned long long)dropped);
   for (int i = 0; i < 2; ++i) {
+    const double* p = plans[i].p;
+    const float middle[3] = {(float)p[0], (float)p[1], (float)p[2]};
     float distance;
-    if (rdm_map_meets(map, plans[i], half, &meets)) goto done;
-    if (rdm_map_distance(map, plans[i], 1, 2.0f, &distance)) goto done;
-    printf("broom at x %.1f m: %s, the nearest thing %.2f m from its middle\n", (double)plans[i][0],
+    if (rdm_map_meets(map, &plans[i], half, &meets)) goto done;
+    if (rdm_map_distance(map, middle, 1, 2.0f, &distance)) goto done;
+    printf("broom at x %.1f m: %s, the nearest thing %.2f m from its middle\n", p[0],
            meets ? "meets something" : "is free", (double)distance);
   }
   if (argc > 1 && rdm_map_write_file(map, argv[1])) goto done;

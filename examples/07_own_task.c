@@ -18,21 +18,22 @@ typedef struct ids { /* what build leaves for the other functions */
 static rdm_result build(void* user, rdm_scene* scene, void* instance) {
   ids* id = instance;
   /* the button is a tree of one link: a cap on a spring */
-  const rdm_robot_shape top = {"top", .kind = RDM_SHAPE_CYLINDER, .size = {0.012, 0.006}, .q[3] = 1};
+  const rdm_robot_shape top = {"top", .kind = RDM_SHAPE_CYLINDER, .size = {0.012, 0.006}, .pose.q[3] = 1};
   rdm_robot_link cap = {"cap", "spring", .parent = RDM_LINK_ROOT, .kind = RDM_JOINT_PRISMATIC, .mass = 0.02};
   const rdm_shape_def side = {.kind = RDM_SHAPE_CYLINDER, .size = {.02, .025}},
                       ground = {"ground", .kind = RDM_SHAPE_PLANE};
-  const rdm_body_def cup = {sizeof cup, 1, "cup", &side, .p = {0.01, -0.43, 0.025}, .mass = 0.1};
+  const rdm_body_def cup = {sizeof cup, 1, "cup", &side, .pose.p = {0.01, -0.43, 0.025}, .mass = 0.1};
   rdm_robot_def press;
   rdm_scene_robot hand;
-  const rdm_scene_robot button = {sizeof button, .own = &press, .name = "button", .p = {-0.033, -0.43, 0.03}};
+  const rdm_scene_robot button = {sizeof button, .own = &press, .name = "button",
+                                  .pose.p = {-0.033, -0.43, 0.03}};
   (void)user;
-  cap.q[3] = cap.axis[2] = 1, cap.lower = -0.01, cap.kp = 100, cap.kd = 2, cap.effort = 2;
+  cap.pose.q[3] = cap.axis[2] = 1, cap.lower = -0.01, cap.kp = 100, cap.kd = 2, cap.effort = 2;
   cap.moment[0] = cap.moment[1] = cap.moment[2] = 1e-5;
   rdm_robot_def_init(&press, sizeof press);
   press.name = "button", press.links = &cap, press.num_links = 1, press.shapes = &top, press.num_shapes = 1;
   rdm_scene_robot_init(&hand, sizeof hand);
-  hand.name = "hand", hand.p[2] = 0.1, hand.q[1] = 1, hand.q[3] = 0;
+  hand.name = "hand", hand.pose.p[2] = 0.1, hand.pose.q[1] = 1, hand.pose.q[3] = 0;
   if (rdm_robot_find("shadow_hand", &hand.robot) || rdm_scene_add_robot(scene, &hand, &id->hand) ||
       rdm_scene_add_robot(scene, &button, NULL) || rdm_scene_add_body(scene, &cup, &id->cup) ||
       rdm_scene_add_static(scene, &ground) ||
@@ -68,7 +69,7 @@ static rdm_result judge(void* user, const void* instance, rdm_world* world, void
       rdm_world_get_link(world, id->tip, &tip) || rdm_world_get_link(world, id->spring, &cap))
     return RDM_ERROR_STATE;
   const double pressed = joints.q[id->spring] / -0.01;
-  out->reward = pressed - 5 * (fabs(tip.p[1] - cap.p[1]) + fabs(tip.p[2] - cap.p[2]));
+  out->reward = pressed - 5 * (fabs(tip.pose.p[1] - cap.pose.p[1]) + fabs(tip.pose.p[2] - cap.pose.p[2]));
   out->cost[0] = touching > 0;
   out->success = pressed > 0.8;
   return RDM_OK;
@@ -83,7 +84,7 @@ static rdm_result observe(void* user, const void* instance, const rdm_world* w, 
     return RDM_ERROR_STATE;
   for (int i = 0; i <= JOINTS; ++i) *obs++ = (float)joints.q[i]; /* the hand's, then the button's */
   for (int i = 0; i <= JOINTS; ++i) *obs++ = (float)(0.1 * joints.qd[i]);
-  for (int k = 0; k < 3; ++k) *obs++ = (float)cup.p[k];
+  for (int k = 0; k < 3; ++k) *obs++ = (float)cup.pose.p[k];
   return RDM_OK;
 }
 

@@ -143,8 +143,8 @@ struct Builder {
         rdm_robot_link l{};
         Pose X = at.X * Pose{j.at, {}};
         X = X * (j.slides ? Pose{ahead * j.axis, {}} : Pose{{}, axis_angle(j.axis, ahead)});
-        put(X.p, l.p);
-        put(X.q, l.q);
+        put(X.p, l.pose.p);
+        put(X.q, l.pose.q);
         put(j.axis, l.axis);
         l.parent = at.row;
         l.kind = j.slides ? RDM_JOINT_PRISMATIC : RDM_JOINT_REVOLUTE;
@@ -253,8 +253,8 @@ struct Builder {
         o.link = at.row;
         o.kind = s.shape.kind;
         put(s.shape.size, o.size);
-        put(X.p, o.p);
-        put(X.q, o.q);
+        put(X.p, o.pose.p);
+        put(X.q, o.pose.q);
         std::copy(s.color.begin(), s.color.end(), o.color);
         o.color[3] = 255;
         out->shapes.push_back(o);
@@ -423,7 +423,7 @@ void check_mass(const Element& e, const std::string& what, bool mend, Mass* m, D
 }
 
 Primitive primitive_of(const rdm_robot_shape& s) {
-  return {s.kind, vec(s.size), {vec(s.p), normalized(turn(s.q))}};
+  return {s.kind, vec(s.size), {vec(s.pose.p), normalized(turn(s.pose.q))}};
 }
 
 std::vector<Pose> link_poses(const Draft& d, const std::vector<double>& q) {
@@ -433,7 +433,7 @@ std::vector<Pose> link_poses(const Draft& d, const std::vector<double>& q) {
     const V3 axis = vec(l.axis);
     const Pose moved =
         l.kind == RDM_JOINT_PRISMATIC ? Pose{q[i] * axis, {}} : Pose{{}, axis_angle(axis, q[i])};
-    out.push_back(pose_of(out, l.parent) * Pose{vec(l.p), normalized(turn(l.q))} * moved);
+    out.push_back(pose_of(out, l.parent) * Pose{vec(l.pose.p), normalized(turn(l.pose.q))} * moved);
   }
   return out;
 }

@@ -69,9 +69,9 @@ struct Writer {
     } else {
       numbers("size", s.size, 3, kNone);
     }
-    numbers("p", s.p, 3, kNone);
-    const bool none = s.q[0] == 0 && s.q[1] == 0 && s.q[2] == 0 && s.q[3] == 0;
-    if (!none) numbers("q", s.q, 4, kNoTurn);
+    numbers("p", s.pose.p, 3, kNone);
+    const bool none = s.pose.q[0] == 0 && s.pose.q[1] == 0 && s.pose.q[2] == 0 && s.pose.q[3] == 0;
+    if (!none) numbers("q", s.pose.q, 4, kNoTurn);
     if (s.color[0] || s.color[1] || s.color[2] || s.color[3])
       line("color", format("[%d, %d, %d]", s.color[0], s.color[1], s.color[2]));
     if (s.seen_only) line("seen_only", "true");
@@ -85,9 +85,9 @@ struct ObjectReader {
     t.only({"kind", "size", "points", "p", "q", "color", "seen_only"});
     rdm_shape_def s{};
     s.kind = shape_kind(t, static_cast<int32_t>(std::size(kShapes)));
-    s.q[3] = 1;
-    t.numbers("p", s.p, 3);
-    t.numbers("q", s.q, 4);
+    s.pose.q[3] = 1;
+    t.numbers("p", s.pose.p, 3);
+    t.numbers("q", s.pose.q, 4);
     std::copy_n(kGrey, 4, s.color);
     read_color(t, s.color);
     s.seen_only = t.flag("seen_only");

@@ -89,8 +89,8 @@ struct Guess {
                 found ? found : format("the frame of the last link %s", name(at.row)).c_str());
     }
     d.flange_link = at.row;
-    put(at.X.p, d.flange_p);
-    put(at.X.q, d.flange_q);
+    put(at.X.p, d.flange.p);
+    put(at.X.q, d.flange.q);
   }
 
   // ---- hands ----
@@ -116,7 +116,7 @@ struct Guess {
     for (const rdm_robot_shape& s : out->shapes)
       if (s.link == row) {
         const double v = volume_of(primitive_of(s));
-        sum = sum + v * vec(s.p), weight += v;
+        sum = sum + v * vec(s.pose.p), weight += v;
       }
     if (weight > 0) return (1 / weight) * sum;
     return row < 0 ? vec(out->def.root_com) : vec(out->links[static_cast<size_t>(row)].com);
@@ -371,8 +371,8 @@ struct Guess {
       out->note(RDM_NOTE_GUESSED, 0, "mount: the root's origin, z along its %s%c", way[axis] < 0 ? "-" : "",
                 "xyz"[axis]);
     }
-    put(X.p, d.mount_p);
-    put(X.q, d.mount_q);
+    put(X.p, d.mount.p);
+    put(X.q, d.mount.q);
   }
 
   void give_fingers(V3 normal) {

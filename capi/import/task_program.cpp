@@ -29,7 +29,7 @@ double draw(rdm_random* random, const Span& s) {
 // Of a place in the world, its velocity included.
 rdm_result motion_of(const rdm_world* world, const Place& place, rdm_motion* out) {
   rdm_motion m{};
-  m.q[3] = 1;
+  m.pose.q[3] = 1;
   switch (place.on) {
     case On::kWorld:
       break;
@@ -42,20 +42,16 @@ rdm_result motion_of(const rdm_world* world, const Place& place, rdm_motion* out
     case On::kBase:
       TRY(rdm_world_get_base(world, place.index, &m));
       break;
-    case On::kShape: {
-      double pose[7];
-      TRY(rdm_world_get_shape(world, place.index, pose));
-      std::copy_n(pose, 3, m.p);
-      std::copy_n(pose + 3, 4, m.q);
+    case On::kShape:
+      TRY(rdm_world_get_shape(world, place.index, &m.pose));
       break;
-    }
   }
   double arm[3];
-  rotate(m.q, place.p, arm);
-  multiply(m.q, place.q, out->q);
+  rotate(m.pose.q, place.p, arm);
+  multiply(m.pose.q, place.q, out->pose.q);
   for (int k = 0; k < 3; ++k) {
     const int i = (k + 1) % 3, j = (k + 2) % 3;
-    out->p[k] = m.p[k] + arm[k];
+    out->pose.p[k] = m.pose.p[k] + arm[k];
     out->v[k] = m.v[k] + m.w[i] * arm[j] - m.w[j] * arm[i];
     out->w[k] = m.w[k];
   }
@@ -91,7 +87,7 @@ rdm_result value_of(const Scene& s, const Term& t, double* value, double* raw) {
       TRY(motion_of(s.world, t.a, &a));
       TRY(motion_of(s.world, t.b, &b));
       double d[3];
-      for (int k = 0; k < 3; ++k) d[k] = t.axis[k] * (a.p[k] - b.p[k]);
+      for (int k = 0; k < 3; ++k) d[k] = t.axis[k] * (a.pose.p[k] - b.pose.p[k]);
       sum = length(d);
       break;
     }
@@ -114,22 +110,22 @@ rdm_result value_of(const Scene& s, const Term& t, double* value, double* raw) {
     case What::kMoved: {
       TRY(motion_of(s.world, t.a, &a));
       double d[3];
-      for (int k = 0; k < 3; ++k) d[k] = a.p[k] - s.state.start[t.index][k];
+      for (int k = 0; k < 3; ++k) d[k] = a.pose.p[k] - s.state.start[t.index][k];
       sum = length(d);
       break;
     }
     case What::kLifted:
       TRY(motion_of(s.world, t.a, &a));
-      sum = a.p[2] - s.state.start[t.index][2];
+      sum = a.pose.p[2] - s.state.start[t.index][2];
       break;
     case What::kHeight:
       TRY(motion_of(s.world, t.a, &a));
-      sum = a.p[2];
+      sum = a.pose.p[2];
       break;
     case What::kUpright: {
       TRY(motion_of(s.world, t.a, &a));
       double axis[3];
-      rotate(a.q, t.axis, axis);
+      rotate(a.pose.q, t.axis, axis);
       sum = dot(vec(axis), vec(t.up));
       break;
     }
@@ -169,8 +165,8 @@ rdm_result value_of(const Scene& s, const Term& t, double* value, double* raw) {
       TRY(motion_of(s.world, t.a, &a));
       TRY(motion_of(s.world, t.b, &b));
       double d[3], in[3];
-      for (int k = 0; k < 3; ++k) d[k] = a.p[k] - b.p[k];
-      unrotate(b.q, d, in);
+      for (int k = 0; k < 3; ++k) d[k] = a.pose.p[k] - b.pose.p[k];
+      unrotate(b.pose.q, d, in);
       for (int k = 0; k < 3; ++k) d[k] = std::max({0.0, t.low[k] - in[k], in[k] - t.high[k]});
       sum = length(d);
       break;
@@ -222,12 +218,12 @@ rdm_result place_bodies(const Program& p, rdm_world* world, rdm_random* random) 
   const auto put = [&](const Draw& d) -> rdm_result {
     rdm_motion m{};
     double rpy[3], turn[4];
-    for (int k = 0; k < 3; ++k) m.p[k] = draw(random, d.p[k]);
+    for (int k = 0; k < 3; ++k) m.pose.p[k] = draw(random, d.p[k]);
     for (int k = 0; k < 3; ++k) rpy[k] = draw(random, d.turn[k]);
     for (int k = 0; k < 3; ++k) m.v[k] = draw(random, d.v[k]);
     for (int k = 0; k < 3; ++k) m.w[k] = draw(random, d.w[k]);
     TRY(turn_of(rpy, turn));
-    multiply(turn, d.q, m.q);
+    multiply(turn, d.q, m.pose.q);
     return rdm_world_set_body(world, d.body, &m);
   };
   for (int32_t i = 0; i < p.num_draws; ++i) {
@@ -262,10 +258,10 @@ rdm_result place_robots(const Program& p, rdm_world* world, State* s, rdm_random
     if (player.placed) {
       rdm_motion m{};
       double rpy[3], turn[4];
-      for (int k = 0; k < 3; ++k) m.p[k] = draw(random, player.p[k]);
+      for (int k = 0; k < 3; ++k) m.pose.p[k] = draw(random, player.p[k]);
       for (int k = 0; k < 3; ++k) rpy[k] = draw(random, player.turn[k]);
       TRY(turn_of(rpy, turn));
-      multiply(turn, player.q, m.q);
+      multiply(turn, player.q, m.pose.q);
       TRY(rdm_world_set_base(world, player.robot, &m));
     }
     if (player.compensated) {
@@ -332,7 +328,7 @@ rdm_result program_reset(void*, const void* instance, rdm_world* world, void* st
   rdm_motion m;
   for (int32_t i = 0; i < p.num_starts; ++i) {
     TRY(motion_of(world, p.starts[i], &m));
-    std::copy_n(m.p, 3, s.start[i]);
+    std::copy_n(m.pose.p, 3, s.start[i]);
   }
   Scene scene{p, s, world, world};
   TRY(open_scene(&scene));
@@ -469,20 +465,20 @@ rdm_result program_observe(void*, const void* instance, const rdm_world* world, 
       case What::kTurning: {
         TRY(motion_of(world, t.a, &a));
         TRY(motion_of(world, t.b, &b));
-        const double* x = t.what == What::kPosition ? a.p : t.what == What::kVelocity ? a.v : a.w;
-        const double* y = t.what == What::kPosition ? b.p : t.what == What::kVelocity ? b.v : b.w;
+        const double* x = t.what == What::kPosition ? a.pose.p : t.what == What::kVelocity ? a.v : a.w;
+        const double* y = t.what == What::kPosition ? b.pose.p : t.what == What::kVelocity ? b.v : b.w;
         double d[3];
         for (int k = 0; k < 3; ++k) d[k] = x[k] - y[k];
-        unrotate(b.q, d, v);
+        unrotate(b.pose.q, d, v);
         for (const double c : v) put(c);
         break;
       }
       case What::kRotation: {
         TRY(motion_of(world, t.a, &a));
         TRY(motion_of(world, t.b, &b));
-        const double back[4] = {-b.q[0], -b.q[1], -b.q[2], b.q[3]};
+        const double back[4] = {-b.pose.q[0], -b.pose.q[1], -b.pose.q[2], b.pose.q[3]};
         double q[4];
-        multiply(back, a.q, q);
+        multiply(back, a.pose.q, q);
         const double sign = q[3] < 0 ? -1 : 1;  // one of the two that are the same turn
         for (const double c : q) put(sign * c);
         break;

@@ -220,8 +220,8 @@ void SceneText::add_part(Part part, const char* kind) {
   double fixed[4];
   if (read_drawn(t, ps, turns, fixed, part.p, part.q) && !r.free_base)
     t.bad(RDM_ERROR_RANGE, line_of(t.t), "p, rpy: a %s whose base is fixed is not moved at a reset", kind);
-  std::copy_n(part.p, 3, r.p);
-  std::copy_n(part.q, 4, r.q);
+  std::copy_n(part.p, 3, r.pose.p);
+  std::copy_n(part.q, 4, r.pose.q);
   if (t.flag("compensate")) {
     if (!r.gravity)
       t.bad(RDM_ERROR_FORMAT, line_of(*t.find("compensate")), "compensate goes with gravity = true");
@@ -241,19 +241,20 @@ void SceneText::add_part(Part part, const char* kind) {
 void SceneText::reach(Part* part, int32_t arm) {
   const Table t = part->t.section("reach");
   t.only({"p", "q", "rpy"});
-  double p[3] = {}, q[4] = {0, 0, 0, 1}, d[3], pose[7];
+  double p[3] = {}, q[4] = {0, 0, 0, 1}, d[3];
+  rdm_pose flange;
   t.need("p");
   t.numbers("p", p, 3);
   read_turn(t, q);
   const double back[4] = {-part->q[0], -part->q[1], -part->q[2], part->q[3]};
   for (int k = 0; k < 3; ++k) d[k] = p[k] - part->p[k];
-  rotate(back, d, pose);
-  multiply(back, q, pose + 3);
+  rotate(back, d, flange.p);
+  multiply(back, q, flange.q);
   Draft of_arm;
   read_built(arm, &of_arm);
   part->start = of_arm.home;
   int32_t found = 0;
-  check(t, line_of(t.t), rdm_robot_reach(arm, pose, part->start.data(), &found));
+  check(t, line_of(t.t), rdm_robot_reach(arm, &flange, part->start.data(), &found));
   if (!found) t.bad(RDM_ERROR_RANGE, line_of(t.t), "the arm does not reach this");
 }
 
@@ -279,15 +280,15 @@ void SceneText::read_shape(const Table& t, const std::string* name, Shapes* out)
     const auto size = t.list(t.need("size"), "size", 1, 3);
     std::copy(size.begin(), size.end(), s.size);
   }
-  s.q[3] = 1;
+  s.pose.q[3] = 1;
   read_color(t, s.color);
   s.seen_only = t.flag("seen_only");
   out->rows.push_back(s);
 }
 
 void SceneText::place_shape(const Table& t, rdm_shape_def* s) const {
-  t.numbers("p", s->p, 3);
-  read_turn(t, s->q);
+  t.numbers("p", s->pose.p, 3);
+  read_turn(t, s->pose.q);
 }
 
 void SceneText::add_object(const Table& t) {
@@ -298,8 +299,8 @@ void SceneText::add_object(const Table& t) {
   check(t, line_of(word), rdm_object_find(t.as_text(word, "object").c_str(), &object));
   double scale = 1;
   t.number("scale", &scale);
-  place_body(t, [&](const double* p, const double* q, int32_t* index) {
-    return rdm_scene_add_object(scene_, object, name.c_str(), p, q, scale, index);
+  place_body(t, [&](const rdm_pose& pose, int32_t* index) {
+    return rdm_scene_add_object(scene_, object, name.c_str(), &pose, scale, index);
   });
   names_.push_back(name);
 }
@@ -336,9 +337,8 @@ void SceneText::add_body(const Table& t) {
   }
   b.shapes = shapes.rows.data();
   b.num_shapes = static_cast<int32_t>(shapes.rows.size());
-  place_body(t, [&](const double* p, const double* q, int32_t* index) {
-    std::copy_n(p, 3, b.p);
-    std::copy_n(q, 4, b.q);
+  place_body(t, [&](const rdm_pose& pose, int32_t* index) {
+    b.pose = pose;
     return rdm_scene_add_body(scene_, &b, index);
   });
 }

@@ -95,12 +95,12 @@ class SceneText {
   template <class F>
   void place_body(const Table& t, F&& add) {
     Draw d{};
-    double p[3] = {}, q[4] = {};
-    bool moves = read_drawn(t, d.p, d.turn, d.q, p, q);
+    rdm_pose pose{};
+    bool moves = read_drawn(t, d.p, d.turn, d.q, pose.p, pose.q);
     moves = spans(t, "v", d.v, 3) || moves;
     moves = spans(t, "w", d.w, 3) || moves;
     d.apart = t.flag("apart", true);
-    check(t, line_of(t.t), add(p, q, &d.body));
+    check(t, line_of(t.t), add(pose, &d.body));
     if (moves)
       *take(t, p_.draws, &p_.num_draws, kMostDraws, "bodies that begin with a range in p, rpy, v or w") = d;
   }

@@ -23,11 +23,12 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 OUTPUT = HERE / "redman" / "_abi.py"
 
+POSE = "rdm_pose"  # arrays of poses are rows of 7 doubles
 SCALARS = {
     "float": "c_float", "double": "c_double", "size_t": "c_size_t", "rdm_result": "c_int32",
     **{f"{sign}int{bits}_t": f"c_{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)},
 }
-DTYPES = {"float": "float32", "double": "float64", **{name: name[:-2] for name in SCALARS if name.endswith("_t")}}
+DTYPES = {"float": "float32", "double": "float64", POSE: "float64", **{name: name[:-2] for name in SCALARS if name.endswith("_t")}}
 
 
 class Declared(NamedTuple):
@@ -205,7 +206,8 @@ def shape_of_argument(variable: Variable, doc: str) -> tuple[str, ...]:
     if variable.length:
         return (variable.length,)
     match = re.search(rf"\b{variable.name} ?{SHAPE}", doc)
-    return shape(match[1]) if match else ()
+    dims = shape(match[1]) if match else ()
+    return (*dims, "7") if variable.base == POSE else dims
 
 
 def camel(name: str) -> str:
@@ -238,10 +240,10 @@ def ctype(variable: Variable, structs: set[str], callbacks: set[str]) -> str:
     if base in callbacks:
         return base
     if stars == 0:
-        return SCALARS[base]
+        return base if base in structs else SCALARS[base]
     if base == "char":
         return {1: "c_char_p" if variable.type.startswith("const") else "c_void_p", 2: "POINTER(c_char_p)"}[stars]
-    if base in structs:
+    if base in structs and base != POSE:
         return f"POINTER({base})" if stars == 1 else "c_void_p"
     return "c_void_p" if stars == 1 else "POINTER(c_void_p)"
 
@@ -397,7 +399,7 @@ def struct_text(d: Declared, structs: set[str], callbacks: set[str]) -> str:
             hint = "Any"
         else:
             kind = ctype(variable, structs, callbacks)
-            hint = HINTS.get(kind, "Any" if kind.startswith("POINTER") or kind in callbacks else "int")
+            hint = HINTS.get(kind, kind if kind in structs else "Any" if kind.startswith("POINTER") or kind in callbacks else "int")
         listed.append(f'        ("{variable.name}", {kind}),\n')
         hints.append(f"    {variable.name}: {hint}\n")
         about += textwrap.wrap(f"{variable.name}: {' '.join(variable.doc.split())}".rstrip(": "), 108,
@@ -411,10 +413,10 @@ RECORD_HINTS = {"c_float": "float", "c_double": "float"}
 
 
 def record_text(d: Declared) -> str:
-    """The Record of a struct that holds values alone, "" for one with pointers to more."""
+    """The Record of a struct that holds values alone, "" for one with pointers or structs in it."""
     lines = []
     for variable, proto in fields(d):
-        if proto or (variable.pointer and variable.type != "const char *"):
+        if proto or (variable.pointer and variable.type != "const char *") or variable.base not in (*SCALARS, "char"):
             return ""
         if variable.name == "struct_size" or variable.name.startswith("reserved"):
             continue

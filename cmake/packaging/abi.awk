@@ -11,11 +11,12 @@ old && /^  RDM_[A-Z_0-9]+ RDM_DEPRECATED/ {  # RDM_BOX RDM_DEPRECATED("RDM_SHAPE
   if (mode == "functions") print "const char " $1 "_plus_1000[1000 + " value "] = \"\";"
   next
 }
-old && /^static inline/ { statement = " "; next }
+old && /^(static inline|RDM_API)/ { statement = " "; next }  # what follows is as the function was
 old && statement != "" {
   statement = statement " " $0
-  if (/\{/) {
-    if (mode == "functions") print statement " __builtin_trap(); }"
+  if (/[{;]/) {
+    sub(/[{;].*/, "{ __builtin_trap(); }", statement)
+    if (mode == "functions") print statement
     statement = ""
   }
   next

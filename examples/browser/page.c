@@ -102,6 +102,7 @@ static rdm_policy_info policy_info;
 static void* scratch;
 static size_t scratch_size;
 static float *poses, *held;
+static rdm_pose* placed;
 static double numbers[6 + 3 * RDM_MAX_COSTS];
 static float touches[kContacts * kContactNumbers];
 static int decision_age;
@@ -130,11 +131,13 @@ EXPORT int page_open(const char* task, double seed, const char* settings) {
   if (rdm_pool_get_spec(pool, &spec) || rdm_pool_get_buffers(pool, &rows) || rdm_pool_reset(pool, NULL, NULL))
     return -1;
   free(poses);
+  free(placed);
   free(held);
   poses = calloc((size_t)spec.num_shapes * 7 + 1, sizeof *poses);
+  placed = calloc((size_t)spec.num_shapes + 1, sizeof *placed);
   held = calloc((size_t)spec.action_dim, sizeof *held);
   decision_age = 0;
-  return poses && held ? 0 : -1;
+  return poses && placed && held ? 0 : -1;
 }
 
 /* The episode that this seed begins. */
@@ -246,22 +249,27 @@ EXPORT const double* page_numbers(void) {
   return numbers;
 }
 
-/* [shapes][7], as rdm_pool_poses. */
+/* [shapes][7], as rdm_pool_get_poses, in float. */
 EXPORT const float* page_poses(void) {
-  return rdm_pool_poses(pool, 0, poses) ? NULL : poses;
+  if (rdm_pool_get_poses(pool, 0, placed)) return NULL;
+  for (int i = 0; i < spec.num_shapes; ++i) {
+    for (int k = 0; k < 3; ++k) poses[7 * i + k] = (float)placed[i].p[k];
+    for (int k = 0; k < 4; ++k) poses[7 * i + 3 + k] = (float)placed[i].q[k];
+  }
+  return poses;
 }
 
 /* How many contact points there are; page_touches has position (m) and force (N) of each. */
 EXPORT int page_contacts(void) {
   static rdm_contact found[kContacts];
-  int count = 0;
-  if (rdm_pool_contacts(pool, 0, found, kContacts, &count)) return -1;
+  size_t count = 0;
+  if (rdm_pool_get_contacts(pool, 0, found, kContacts, &count)) return -1;
   if (count > kContacts) count = kContacts;
-  for (int i = 0; i < count; ++i) {
+  for (size_t i = 0; i < count; ++i) {
     memcpy(&touches[i * kContactNumbers], found[i].position, sizeof found[i].position);
     memcpy(&touches[i * kContactNumbers + 3], found[i].force, sizeof found[i].force);
   }
-  return count;
+  return (int)count;
 }
 EXPORT const float* page_touches(void) {
   return touches;

@@ -103,7 +103,8 @@ Report show(const rdm_object_def& def, const ObjectFlags& flags, Json json, cons
   Table table({"shape", "size", "place"});
   for (int32_t i = 0; i < def.num_shapes; ++i) {
     const rdm_shape_def& s = def.shapes[i];
-    table.add({kKinds[s.kind], size_text(s), format("%.4f %.4f %.4f", s.p[0], s.p[1], s.p[2])});
+    table.add(
+        {kKinds[s.kind], size_text(s), format("%.4f %.4f %.4f", s.pose.p[0], s.pose.p[1], s.pose.p[2])});
   }
   std::string text = format("%s: %.4g kg, %s, friction %.3g\n", def.name, def.mass,
                             def.material ? def.material : "object", def.friction) +
@@ -172,7 +173,7 @@ Report object_of_mesh(const ObjectFlags& flags) {
     s.kind = RDM_SHAPE_HULL;
     s.points = p.data();
     s.num_points = static_cast<int32_t>(p.size() / 3);
-    s.q[3] = 1;
+    s.pose.q[3] = 1;
     shapes.push_back(s);
   }
   const std::string name = flags.name.empty() ? name_of(flags.file) : flags.name;

@@ -168,6 +168,12 @@ typedef struct rdm_option_spec { /* one row of an option table */
 RDM_API rdm_result rdm_nearest_names(const char *name, const char *names, char *text,
                                      size_t capacity);
 
+/* ---- poses ----------------------------------------------------------------------------------- */
+typedef struct rdm_pose {   /* frozen layout: 7 doubles, where a frame is in another */
+  double p[3];              /* its origin, m                                                  */
+  double q[4];              /* its rotation (x, y, z, w), unit; given, all 0: none            */
+} rdm_pose;
+
 /* ---- rows of tables that several groups share ------------------------------------------------ */
 typedef struct rdm_field {  /* frozen layout: a run of observation entries */
   const char *name;         /* "right.joint_position"                                         */

@@ -48,6 +48,10 @@ typedef struct rdm_shape {   /* frozen layout: what the scene is made of, the sa
   uint8_t color[4];          /* red, green, blue, 255 */
   int32_t fixed;             /* flag: never moves */
 } rdm_shape;
+/* pose [num_shapes][7]: position (m), quaternion (x, y, z, w); world frame of that world. A function
+ * of the library, for there is nowhere here to put the doubles of rdm_pool_get_poses. */
+RDM_API RDM_DEPRECATED("rdm_pool_get_poses")
+rdm_result rdm_pool_poses(const rdm_pool *p, int32_t env, float *pose);
 
 #if !defined(RDM_NO_DEPRECATED)
 enum {
@@ -238,6 +242,11 @@ rdm_result rdm_pool_bind(rdm_pool *p, const rdm_buffers *b) {
 }
 
 static inline RDM_DEPRECATED("rdm_pool_write_state")
+rdm_result rdm_pool_state_size(const rdm_pool *p, int32_t env, size_t *bytes) {
+  return rdm_pool_write_state(p, env, NULL, 0, bytes);
+}
+
+static inline RDM_DEPRECATED("rdm_pool_write_state")
 rdm_result rdm_pool_get_state(const rdm_pool *p, int32_t env, void *bytes, size_t capacity,
                               size_t *size) {
   return rdm_pool_write_state(p, env, bytes, capacity, size);
@@ -283,6 +292,15 @@ rdm_result rdm_pool_shape(const rdm_pool *p, int32_t i, rdm_shape *out) {
     for (k = 0; k < 4; ++k) out->color[k] = info.color[k];
     out->fixed = info.fixed;
   }
+  return r;
+}
+
+static inline RDM_DEPRECATED("rdm_pool_get_contacts")
+rdm_result rdm_pool_contacts(const rdm_pool *p, int32_t env, rdm_contact *out, int32_t capacity,
+                             int32_t *count) {
+  size_t n = 0;
+  const rdm_result r = rdm_pool_get_contacts(p, env, out, (size_t)capacity, count ? &n : NULL);
+  if (r == RDM_OK) *count = (int32_t)n;
   return r;
 }
 
@@ -523,11 +541,6 @@ rdm_result rdm_world_base(const rdm_world *world, int32_t robot, rdm_motion *out
 static inline RDM_DEPRECATED("rdm_world_get_body")
 rdm_result rdm_world_body(const rdm_world *world, int32_t body, rdm_motion *out) {
   return rdm_world_get_body(world, body, out);
-}
-
-static inline RDM_DEPRECATED("rdm_world_get_shape")
-rdm_result rdm_world_shape(const rdm_world *world, int32_t shape, double pose[7]) {
-  return rdm_world_get_shape(world, shape, pose);
 }
 
 static inline RDM_DEPRECATED("rdm_world_get_sensor")

@@ -86,9 +86,8 @@ RDM_API rdm_result rdm_map_query(const rdm_map *m, const float *points, size_t c
  * out [capacity], *count is how many there are. */
 RDM_API rdm_result rdm_map_box(const rdm_map *m, const float low[3], const float high[3],
                                rdm_voxel *out, size_t capacity, size_t *count);
-/* *meets is 1 when an occupied voxel meets the turned box: pose [7] (position, quaternion), half
- * sizes half [3]. */
-RDM_API rdm_result rdm_map_meets(const rdm_map *m, const float pose[7], const float half[3],
+/* *meets is 1 when an occupied voxel meets the box of half sizes half [3] that stands at `pose`. */
+RDM_API rdm_result rdm_map_meets(const rdm_map *m, const rdm_pose *pose, const float half[3],
                                  int32_t *meets);
 /* Where the ray from origin [3] along direction [3] enters the first occupied voxel within `range`
  * m: *found is 1 and hit [3] is written. An unknown voxel ends the ray unless through_unknown is
@@ -100,9 +99,9 @@ RDM_API rdm_result rdm_map_raycast(const rdm_map *m, const float origin[3],
  * `most` if none is so near. */
 RDM_API rdm_result rdm_map_distance(const rdm_map *m, const float *points, size_t count, float most,
                                     float *distance);
-/* A grid of counts n [3] of cells of `side` m (each count 1 to 1024) about pose [7]: what the map
+/* A grid of counts n [3] of cells of `side` m (each count 1 to 1024) about `pose`: what the map
  * says at their centres, out [n0][n1][n2], x outermost: 1 occupied, 0 free, -1 unknown. */
-RDM_API rdm_result rdm_map_grid(const rdm_map *m, const float pose[7], const int32_t n[3],
+RDM_API rdm_result rdm_map_grid(const rdm_map *m, const rdm_pose *pose, const int32_t n[3],
                                 float side, int8_t *out);
 
 /* OctoMap's files: RDM_MAP_BINARY (.bt: occupied or free) and RDM_MAP_FULL (.ot: the probabilities

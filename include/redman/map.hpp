@@ -60,9 +60,9 @@ class Map {
     check(rdm_map_box(get(), low, high, out.data(), out.size(), &count));
     return out;
   }
-  bool meets(const float pose[7], const float half[3]) const {
+  bool meets(const rdm_pose& pose, const float half[3]) const {
     int32_t yes = 0;
-    check(rdm_map_meets(get(), pose, half, &yes));
+    check(rdm_map_meets(get(), &pose, half, &yes));
     return yes != 0;
   }
   // True when something is hit; its place is then in hit.

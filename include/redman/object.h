@@ -26,8 +26,7 @@ typedef struct rdm_shape_def {
   int32_t kind;            /* RDM_SHAPE_SPHERE ... RDM_SHAPE_HULL; an RDM_SHAPE_PLANE stands
                             * still */
   double size[3];          /* as rdm_shape_info, m; of a hull unused */
-  double p[3];             /* position in the frame of the body, or in the world, m */
-  double q[4];             /* rotation; all 0: none */
+  rdm_pose pose;           /* in the frame of the body, or in the world */
   uint8_t color[4];        /* red, green, blue, 255; all 0: grey */
   int32_t seen_only;       /* flag: nothing touches it */
 } rdm_shape_def;

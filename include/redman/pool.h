@@ -249,11 +249,10 @@ RDM_API rdm_result rdm_pool_baseline(rdm_pool *p, int32_t kind);
  * hold what no world can have: nothing changes. Bytes are for files and other processes. Snapshots
  * within one, as for going back some steps, are cheap by rdm_pool_copy, with a second pool whose
  * worlds are the ring: a thirtieth of writing and reading again, in a task of hands. */
-RDM_API rdm_result rdm_pool_state_size(const rdm_pool *p, int32_t env, size_t *bytes);
 RDM_API rdm_result rdm_pool_write_state(const rdm_pool *p, int32_t env, void *bytes,
                                         size_t capacity, size_t *size); /* to bytes [capacity];
-                                                                         * *size is how many
-                                                                         * there are */
+                                                                         * NULL asks for the
+                                                                         * size */
 RDM_API rdm_result rdm_pool_read_state(rdm_pool *p, int32_t env, const void *bytes,
                                        size_t size); /* of bytes [size] */
 RDM_API rdm_result rdm_pool_get_hash(const rdm_pool *p, int32_t env,
@@ -271,8 +270,8 @@ typedef struct rdm_shape_info { /* a part of what the scene is made of, the same
 } rdm_shape_info;
 RDM_API rdm_result rdm_pool_shape_at(const rdm_pool *p, int32_t i,
                                      rdm_shape_info *io); /* i < num_shapes */
-/* pose [num_shapes][7]: position (m), quaternion (x, y, z, w); world frame of that world. */
-RDM_API rdm_result rdm_pool_poses(const rdm_pool *p, int32_t env, float *pose);
+/* To poses [num_shapes] those of the shapes, in the world's frame. */
+RDM_API rdm_result rdm_pool_get_poses(const rdm_pool *p, int32_t env, rdm_pose *poses);
 typedef struct rdm_contact { /* frozen layout: one contact point of the last substep */
   int32_t shape_a, shape_b;  /* for rdm_pool_shape_at */
   float position[3];         /* m */
@@ -282,8 +281,8 @@ typedef struct rdm_contact { /* frozen layout: one contact point of the last sub
 } rdm_contact;
 /* Writes up to capacity contacts to out [capacity], of things asleep as they fell asleep; *count is
  * how many there are. */
-RDM_API rdm_result rdm_pool_contacts(const rdm_pool *p, int32_t env, rdm_contact *out,
-                                     int32_t capacity, int32_t *count);
+RDM_API rdm_result rdm_pool_get_contacts(const rdm_pool *p, int32_t env, rdm_contact *out,
+                                         size_t capacity, size_t *count);
 /* A picture of world env. camera: a name of the task's. rgb [h][w][3], depth [h][w] (m along the
  * optical axis, 0: nothing hit), segmentation [h][w] (shape, -1: nothing); each may be NULL. 1 <=
  * w, h <= 8192. */
@@ -333,7 +332,7 @@ RDM_API rdm_result rdm_pool_set_joints(rdm_pool *p, int32_t env, const double *q
                                        size_t count);
 typedef struct rdm_ray_hit { /* what a ray meets first */
   uint32_t struct_size;      /* in: bytes */
-  int32_t shape;             /* for rdm_pool_shape; -1: nothing, all else is NaN */
+  int32_t shape;             /* for rdm_pool_shape_at; -1: nothing, all else is NaN */
   double distance;           /* m, from the origin */
   double point[3];           /* m, where the ray enters it */
   double normal[3];          /* unit, out of the shape there */

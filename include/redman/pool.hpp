@@ -62,13 +62,20 @@ class Pool {
   // env -1: all worlds.
   Bytes state(int32_t env = -1) const {
     size_t size = 0;
-    check(rdm_pool_state_size(get(), env, &size));
+    check(rdm_pool_write_state(get(), env, nullptr, 0, &size));
     Bytes bytes(size);
     check(rdm_pool_write_state(get(), env, bytes.data(), bytes.size(), &size));
     return bytes;
   }
   void set_state(const Bytes& bytes, int32_t env = -1) {
     check(rdm_pool_read_state(get(), env, bytes.data(), bytes.size()));
+  }
+  // Of each shape, in the frame of that world.
+  std::vector<rdm_pose> poses(int32_t env = 0) const {
+    std::vector<rdm_pose> all(static_cast<size_t>(spec_.num_shapes) + 1);
+    check(rdm_pool_get_poses(get(), env, all.data()));
+    all.pop_back();
+    return all;
   }
   uint64_t hash(int32_t env = -1) const {
     uint64_t h = 0;

@@ -9,7 +9,7 @@ extern "C" {
 
 /* A robot is a tree of links on a root, as plain arrays; the library's own are described in the
  * same way (rdm_robot_get_def, rdm_robot_link_at ...). Frames: a link's frame is that of its joint;
- * it stands at (p, q) in its parent's frame while the joint is at 0, and turns about (slides along)
+ * it stands at `pose` in its parent's frame while the joint is at 0, and turns about (slides along)
  * `axis` of its own. A hand is given as the right one: fingers and palm by their rows; options
  * hand= and arm= of the hand tasks take robots by name.
  *
@@ -31,8 +31,7 @@ typedef struct rdm_robot_link {
   const char *joint;       /* of the joint, unique */
   int32_t parent;          /* an earlier row, RDM_LINK_ROOT */
   int32_t kind;            /* RDM_JOINT_REVOLUTE, RDM_JOINT_PRISMATIC */
-  double p[3];             /* position in the parent's frame with the joint at 0 */
-  double q[4];             /* rotation, unit */
+  rdm_pose pose;           /* in the parent's frame with the joint at 0 */
   double axis[3];          /* in the link's own frame, unit */
   double lower;            /* range, below upper */
   double upper;            /* range */
@@ -52,8 +51,7 @@ typedef struct rdm_robot_shape { /* frozen layout: what of a link can be touched
   int32_t kind;            /* RDM_SHAPE_SPHERE, RDM_SHAPE_CAPSULE, RDM_SHAPE_BOX,
                             * RDM_SHAPE_CYLINDER, RDM_SHAPE_ELLIPSOID */
   double size[3];          /* as rdm_shape_info, m */
-  double p[3];             /* position in the link's frame, m */
-  double q[4];             /* rotation, unit */
+  rdm_pose pose;           /* in the link's frame */
   uint8_t color[4];        /* red, green, blue, 255 */
   uint8_t reserved[4];     /* 0 */
 } rdm_robot_shape;
@@ -122,12 +120,10 @@ typedef struct rdm_robot_def { /* a whole robot; the arrays are copied by rdm_ro
   double root_mass;        /* of the root link, kg */
   double root_com[3];      /* in the root frame, m */
   double root_moment[6];   /* as rdm_robot_link.moment */
-  double mount_p[3];       /* of hands: the frame, z to the fingers, that comes onto an arm's
+  rdm_pose mount;          /* of hands: the frame, z to the fingers, that comes onto an arm's
                             * flange; in the root frame */
-  double mount_q[4];       /* rotation */
-  double flange_p[3];      /* of arms: the frame, z out of the arm, that carries a hand; in
+  rdm_pose flange;         /* of arms: the frame, z out of the arm, that carries a hand; in
                             * flange_link's frame */
-  double flange_q[4];      /* rotation */
   int32_t flange_link;     /* row, RDM_LINK_NONE */
   int32_t palm_link;       /* row, RDM_LINK_ROOT, RDM_LINK_NONE */
   double palm_p[3];        /* centre of the palm's surface, in palm_link's frame, m */
@@ -168,14 +164,15 @@ RDM_API rdm_result rdm_robot_finger_at(int32_t robot, int32_t i,
  * rdm_robot_get_def; folded and closed are 0 where it has none. */
 RDM_API rdm_result rdm_robot_get_postures(int32_t robot, int32_t *commands, double *home,
                                           double *folded, float *closed);
-/* For joints q [num_links], in the root frame: poses [num_links][7] of the links, position (m) and
- * quaternion. flange [7], tips [num_fingers][3] and palm [7] (origin at hold_p, y into the palm, z
- * as the fingers point) may be NULL. */
-RDM_API rdm_result rdm_robot_kinematics(int32_t robot, const double *q, double *poses,
-                                        double *flange, double *tips, double *palm);
-/* Joints q [num_links], from where they are, to where the arm's flange has pose [7] in the root
- * frame. *found is 0 when the least squares end elsewhere. UNSUPPORTED: no flange. */
-RDM_API rdm_result rdm_robot_reach(int32_t robot, const double pose[7], double *q, int32_t *found);
+/* For joints q [num_links], in the root frame: poses of the links to links [num_links]. *flange,
+ * tips [num_fingers][3] and *palm (origin at hold_p, y into the palm, z as the fingers point) may be
+ * NULL. */
+RDM_API rdm_result rdm_robot_kinematics(int32_t robot, const double *q, rdm_pose *links,
+                                        rdm_pose *flange, double *tips, rdm_pose *palm);
+/* Joints q [num_links], from where they are, to where the arm's flange has the pose `flange` in the
+ * root frame. *found is 0 when the least squares end elsewhere. UNSUPPORTED: no flange. */
+RDM_API rdm_result rdm_robot_reach(int32_t robot, const rdm_pose *flange, double *q,
+                                   int32_t *found);
 
 #ifdef __cplusplus
 }

@@ -54,8 +54,7 @@ typedef struct rdm_body_def { /* a free body; its frame is at its centre of mass
   int32_t num_shapes;      /* count */
   const char *name;        /* unique among bodies and robots */
   const rdm_shape_def *shapes; /* [num_shapes] 1 or more */
-  double p[3];             /* position at the start, m */
-  double q[4];             /* rotation; all 0: none */
+  rdm_pose pose;           /* at the start */
   double mass;             /* kg */
   double moment[6];        /* xx yy zz xy xz yz, kg m2; all 0: of the shapes, solid, of one
                             * density */
@@ -71,8 +70,7 @@ typedef struct rdm_scene_robot {
   const rdm_robot_def *own; /* a robot of this scene alone, in the place of `robot`; NULL */
   const char *name;        /* begins, with '_', the names of its links, joints and shapes; unique */
   const char *material;    /* of its shapes; NULL: "default" */
-  double p[3];             /* its base at the start, m */
-  double q[4];             /* rotation; all 0: none */
+  rdm_pose pose;           /* of its base at the start */
   double base_damping;     /* of a free base: of all links, 1/s */
   int32_t free_base;       /* flag: the base moves */
   int32_t left;            /* flag: the mirror image */
@@ -146,13 +144,12 @@ RDM_API rdm_result rdm_scene_add_robot(rdm_scene *scene, const rdm_scene_robot *
                                        int32_t *index); /* index: NULL */
 RDM_API rdm_result rdm_scene_add_body(rdm_scene *scene, const rdm_body_def *body,
                                       int32_t *index); /* index: NULL */
-/* An object at the pose p [3] (m), q [4] (all 0: none) of its centre of mass, as the body and first
- * shape `name` (others: name_1, name_2 ...), `scale` times as large, 0.05 to 20, its mass as it is;
- * index: NULL. Its material is one of the scene: a new one rubs on each that is there with the
- * object's friction, on another object's with the lower of the two. */
+/* An object whose centre of mass has that pose, as the body and first shape `name` (others: name_1,
+ * name_2 ...), `scale` times as large, 0.05 to 20, its mass as it is; index: NULL. Its material is
+ * one of the scene: a new one rubs on each that is there with the object's friction, on another
+ * object's with the lower of the two. */
 RDM_API rdm_result rdm_scene_add_object(rdm_scene *scene, int32_t object, const char *name,
-                                        const double p[3], const double q[4], double scale,
-                                        int32_t *index);
+                                        const rdm_pose *pose, double scale, int32_t *index);
 RDM_API rdm_result rdm_scene_add_static(rdm_scene *scene,
                                         const rdm_shape_def *shape); /* stands still */
 /* For a task whose numbers follow from its options: another count for a field, in the order of
@@ -190,8 +187,7 @@ typedef struct rdm_joints {
   const double *torque;    /* [count] of the drives, mean over the step, N m (N) */
 } rdm_joints;
 typedef struct rdm_motion { /* frozen layout: of a frame, in the world */
-  double p[3];             /* m */
-  double q[4];             /* rotation */
+  rdm_pose pose;           /* where it is */
   double v[3];             /* velocity of the frame's origin, m/s */
   double w[3];             /* angular velocity, world axes, rad/s */
 } rdm_motion;
@@ -205,7 +201,7 @@ RDM_API rdm_result rdm_world_get_base(const rdm_world *world, int32_t robot,
 RDM_API rdm_result rdm_world_get_body(const rdm_world *world, int32_t body,
                                       rdm_motion *out); /* of its centre of mass */
 RDM_API rdm_result rdm_world_get_shape(const rdm_world *world, int32_t shape,
-                                       double pose[7]); /* position, rotation */
+                                       rdm_pose *out); /* of its frame */
 /* Contact force [3] (N) and torque [3] (N m) on a fingertip, mean over the step, in the link's
  * frame, about its origin. */
 RDM_API rdm_result rdm_world_get_sensor(const rdm_world *world, int32_t sensor, double force[3],

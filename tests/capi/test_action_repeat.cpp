@@ -170,7 +170,7 @@ TEST(ActionRepeat, StatesMoveBetweenPoolsThatRepeatAndThatDoNot) {
   Worlds four(kCases[0], 2, 4, RDM_AUTORESET_SAME_STEP, 0), one(kCases[0], 2, 1, RDM_AUTORESET_SAME_STEP, 0);
   for (int t = 0; t < 3; ++t) ASSERT_EQ(rdm_pool_step(four.pool), RDM_OK);
   size_t size = 0;
-  ASSERT_EQ(rdm_pool_state_size(four.pool, -1, &size), RDM_OK);
+  ASSERT_EQ(rdm_pool_write_state(four.pool, -1, nullptr, 0, &size), RDM_OK);
   std::vector<unsigned char> state(size);
   ASSERT_EQ(rdm_pool_write_state(four.pool, -1, state.data(), size, &size), RDM_OK);
   ASSERT_EQ(rdm_pool_read_state(one.pool, -1, state.data(), size), RDM_OK) << rdm_last_error();

@@ -31,9 +31,9 @@ class Look : public testing::Test {
     EXPECT_EQ(rdm_pool_reset(made, nullptr, nullptr), RDM_OK);
     return made;
   }
-  std::vector<float> poses(rdm_pool* p, int32_t env) const {
-    std::vector<float> out(static_cast<size_t>(7 * spec.num_shapes), NAN);
-    EXPECT_EQ(rdm_pool_poses(p, env, out.data()), RDM_OK);
+  std::vector<rdm_pose> poses(rdm_pool* p, int32_t env) const {
+    std::vector<rdm_pose> out(static_cast<size_t>(spec.num_shapes), {{NAN, NAN, NAN}, {NAN, NAN, NAN, NAN}});
+    EXPECT_EQ(rdm_pool_get_poses(p, env, out.data()), RDM_OK);
     return out;
   }
   int32_t object() const { return object(pool); }
@@ -85,40 +85,38 @@ TEST_F(Look, ShapesAndPoses) {
   }
   EXPECT_LT(fixed, spec.num_shapes);
   EXPECT_EQ(rdm_pool_shape_at(pool, spec.num_shapes, &s), RDM_ERROR_RANGE);
-  const auto pose = poses(pool, 1);
-  for (size_t i = 0; i < pose.size(); i += 7) {
-    const double q = std::hypot(std::hypot(pose[i + 3], pose[i + 4]), std::hypot(pose[i + 5], pose[i + 6]));
-    EXPECT_NEAR(q, 1, 1e-5);
-    EXPECT_LT(std::abs(pose[i]) + std::abs(pose[i + 1]) + std::abs(pose[i + 2]), 100);
+  for (const rdm_pose& pose : poses(pool, 1)) {
+    EXPECT_NEAR(std::hypot(std::hypot(pose.q[0], pose.q[1]), std::hypot(pose.q[2], pose.q[3])), 1, 1e-12);
+    EXPECT_LT(std::abs(pose.p[0]) + std::abs(pose.p[1]) + std::abs(pose.p[2]), 100);
   }
-  float none[7];
-  EXPECT_EQ(rdm_pool_poses(pool, 2, none), RDM_ERROR_RANGE);
-  EXPECT_EQ(rdm_pool_poses(pool, -1, none), RDM_ERROR_RANGE);
+  rdm_pose none;
+  EXPECT_EQ(rdm_pool_get_poses(pool, 2, &none), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_pool_get_poses(pool, -1, &none), RDM_ERROR_RANGE);
 }
 
 TEST_F(Look, ContactsAreCountedBeyondTheCapacity) {
-  int32_t most = 0;
+  size_t most = 0;
   for (int step = 0; step < 60; ++step) {
     ASSERT_EQ(rdm_pool_step(pool), RDM_OK);
-    int32_t count = -1;
-    ASSERT_EQ(rdm_pool_contacts(pool, 0, nullptr, 0, &count), RDM_OK);
-    std::vector<rdm_contact> contacts(static_cast<size_t>(count) + 1);
+    size_t count = 7777;
+    ASSERT_EQ(rdm_pool_get_contacts(pool, 0, nullptr, 0, &count), RDM_OK);
+    std::vector<rdm_contact> contacts(count + 1);
     std::memset(contacts.data(), 0x7f, contacts.size() * sizeof contacts[0]);
-    ASSERT_EQ(rdm_pool_contacts(pool, 0, contacts.data(), count + 1, &count), RDM_OK);
-    for (int32_t i = 0; i < count; ++i) {
-      const rdm_contact& c = contacts[static_cast<size_t>(i)];
+    ASSERT_EQ(rdm_pool_get_contacts(pool, 0, contacts.data(), count + 1, &count), RDM_OK);
+    for (size_t i = 0; i < count; ++i) {
+      const rdm_contact& c = contacts[i];
       EXPECT_NEAR(std::hypot(c.normal[0], c.normal[1], c.normal[2]), 1, 1e-4);
       EXPECT_TRUE(c.shape_a >= 0 && c.shape_a < spec.num_shapes && c.shape_b >= 0 &&
                   c.shape_b < spec.num_shapes);
       EXPECT_GE(c.depth, -1e-3f);
     }
-    EXPECT_EQ(contacts[static_cast<size_t>(count)].shape_a, 0x7f7f7f7f);
+    EXPECT_EQ(contacts[count].shape_a, 0x7f7f7f7f);
     most = std::max(most, count);
   }
-  EXPECT_GT(most, 0);  // the object lies in the hand
-  int32_t count = 0;
-  EXPECT_EQ(rdm_pool_contacts(pool, 0, nullptr, 5, &count), RDM_ERROR_ARGUMENT);
-  EXPECT_EQ(rdm_pool_contacts(pool, 0, nullptr, -1, &count), RDM_ERROR_RANGE);
+  EXPECT_GT(most, 0u);  // the object lies in the hand
+  size_t count = 0;
+  EXPECT_EQ(rdm_pool_get_contacts(pool, 0, nullptr, 5, &count), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_pool_get_contacts(pool, 0, nullptr, static_cast<size_t>(-1), &count), RDM_ERROR_RANGE);
 }
 
 TEST_F(Look, PicturesAgreeWithEachOther) {
@@ -147,9 +145,9 @@ TEST_F(Look, LookingChangesNothing) {
   uint64_t before = 0, after = 0;
   ASSERT_EQ(rdm_pool_get_hash(pool, -1, &before), RDM_OK);
   std::vector<uint8_t> rgb(3 * 32 * 24);
-  int32_t count = 0;
+  size_t count = 0;
   rdm_pool_render(pool, 0, "front", 32, 24, rgb.data(), nullptr, nullptr);
-  rdm_pool_contacts(pool, 0, nullptr, 0, &count);
+  rdm_pool_get_contacts(pool, 0, nullptr, 0, &count);
   poses(pool, 0);
   ASSERT_EQ(rdm_pool_get_hash(pool, -1, &after), RDM_OK);
   EXPECT_EQ(before, after);
@@ -174,9 +172,10 @@ TEST_F(Look, PushMovesTheObjectInItsDirectionForOneStep) {
     ASSERT_EQ(rdm_pool_step(pool), RDM_OK);
     ASSERT_EQ(rdm_pool_step(twin), RDM_OK);
   }
-  const size_t z = static_cast<size_t>(7 * shape + 2);
-  EXPECT_GT(poses(pool, 0)[z], poses(twin, 0)[z] + 0.005f);
-  EXPECT_EQ(poses(pool, 1), poses(twin, 1));
+  const auto at = static_cast<size_t>(shape);
+  EXPECT_GT(poses(pool, 0)[at].p[2], poses(twin, 0)[at].p[2] + 0.005);
+  const std::vector<rdm_pose> other = poses(pool, 1), same = poses(twin, 1);
+  EXPECT_EQ(std::memcmp(other.data(), same.data(), other.size() * sizeof other[0]), 0);
   rdm_pool_destroy(twin);
   const float bad[3] = {0, NAN, 0};
   EXPECT_EQ(rdm_pool_push(pool, 0, shape, bad), RDM_ERROR_ARGUMENT);

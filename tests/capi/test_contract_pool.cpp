@@ -27,12 +27,11 @@ TEST(ContractPool, NullIsAnArgumentError) {
   EXPECT_EQ(rdm_pool_get_spec(nullptr, &spec), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_pool_get_stats(nullptr, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_pool_get_hash(nullptr, 0, nullptr), RDM_ERROR_ARGUMENT);
-  EXPECT_EQ(rdm_pool_state_size(nullptr, 0, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_pool_write_state(nullptr, 0, nullptr, 0, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_pool_read_state(nullptr, 0, nullptr, 0), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_pool_shape_at(nullptr, 0, nullptr), RDM_ERROR_ARGUMENT);
-  EXPECT_EQ(rdm_pool_poses(nullptr, 0, nullptr), RDM_ERROR_ARGUMENT);
-  EXPECT_EQ(rdm_pool_contacts(nullptr, 0, nullptr, 0, nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_pool_get_poses(nullptr, 0, nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_pool_get_contacts(nullptr, 0, nullptr, 0, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_pool_render(nullptr, 0, "front", 8, 8, nullptr, nullptr, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_pool_field_at(nullptr, 0, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_pool_option_at(nullptr, 0, nullptr, nullptr), RDM_ERROR_ARGUMENT);
@@ -162,8 +161,10 @@ TEST(ContractPool, CorruptStatesChangeNothing) {
   ASSERT_EQ(rdm_pool_reset(p, nullptr, nullptr), RDM_OK);
   ASSERT_EQ(rdm_pool_step(p), RDM_OK);
   size_t n = 0;
-  ASSERT_EQ(rdm_pool_state_size(p, -1, &n), RDM_OK);
+  ASSERT_EQ(rdm_pool_write_state(p, -1, nullptr, 0, &n), RDM_OK);
   std::vector<unsigned char> state(n);
+  EXPECT_EQ(rdm_pool_write_state(p, -1, nullptr, 0, nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_pool_write_state(p, 77, nullptr, 0, &n), RDM_ERROR_RANGE);
   ASSERT_EQ(rdm_pool_write_state(p, -1, state.data(), n - 1, &n), RDM_ERROR_RANGE);
   ASSERT_EQ(rdm_pool_write_state(p, -1, state.data(), state.size(), &n), RDM_OK);
   ASSERT_EQ(rdm_pool_step(p), RDM_OK);

@@ -131,7 +131,7 @@ TEST(ContractRanks, WorldsHaveTheirPlaceAmongAll) {
   EXPECT_EQ(hash_of(mine, 1), hash_of(all, 3));
   ASSERT_EQ(rdm_pool_step(all), RDM_OK);
   size_t size = 0;
-  ASSERT_EQ(rdm_pool_state_size(all, -1, &size), RDM_OK);
+  ASSERT_EQ(rdm_pool_write_state(all, -1, nullptr, 0, &size), RDM_OK);
   Bytes bytes(size);
   ASSERT_EQ(rdm_pool_write_state(all, -1, bytes.data(), size, &size), RDM_OK);
   ASSERT_EQ(rdm_pool_read_state(mine, -1, bytes.data(), size), RDM_OK) << rdm_last_error();

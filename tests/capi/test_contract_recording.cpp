@@ -219,7 +219,7 @@ TEST(ContractRecording, StartsResumeAndDoNotFollowThreads) {
   play(a.pool, s.max_steps + 5);
   std::vector<unsigned char> state;
   size_t n = 0;
-  ASSERT_EQ(rdm_pool_state_size(a.pool, -1, &n), RDM_OK);
+  ASSERT_EQ(rdm_pool_write_state(a.pool, -1, nullptr, 0, &n), RDM_OK);
   state.resize(n);
   ASSERT_EQ(rdm_pool_write_state(a.pool, -1, state.data(), n, &n), RDM_OK);
   const uint64_t before = hash_of(b.pool);

@@ -93,7 +93,7 @@ TEST_P(ContractTasks, ASavedStateGoesOnWithTheSameBytes) {
   rdm_pool *p = started(config()), *other = started(config());
   play(p, kSteps);
   size_t n = 0;
-  ASSERT_EQ(rdm_pool_state_size(p, -1, &n), RDM_OK);
+  ASSERT_EQ(rdm_pool_write_state(p, -1, nullptr, 0, &n), RDM_OK);
   std::vector<unsigned char> state(n);
   ASSERT_EQ(rdm_pool_write_state(p, -1, state.data(), n, &n), RDM_OK);
   play(other, 7);
@@ -149,7 +149,7 @@ TEST_P(ContractTasks, MemoryIsExactAndStepsAndStatesTakeNone) {
   EXPECT_EQ(host.live, ours);
   play(p, 2);
   size_t size = 0;
-  ASSERT_EQ(rdm_pool_state_size(p, -1, &size), RDM_OK);
+  ASSERT_EQ(rdm_pool_write_state(p, -1, nullptr, 0, &size), RDM_OK);
   std::vector<unsigned char> state(size);
   const int64_t before = heap_count();
   const size_t calls = host.calls;

@@ -34,6 +34,7 @@ TEST(ContractTexts, OfAPool) {
   rdm_shape_info shape = RDM_INIT(rdm_shape_info);
   rdm_field_info field = RDM_INIT(rdm_field_info);
   rdm_camera_info camera = RDM_INIT(rdm_camera_info);
+  rdm_pose pose;
   float number = 0;
   expect_texts(
       {
@@ -47,13 +48,13 @@ TEST(ContractTexts, OfAPool) {
           {"bind", [&] { return rdm_pool_set_buffers(p, nullptr); }},
           {"step_masked", [&] { return rdm_pool_step_masked(p, nullptr); }},
           {"baseline", [&] { return rdm_pool_baseline(p, 9); }},
-          {"state_size", [&] { return rdm_pool_state_size(p, 7, &n); }},
+          {"state_size", [&] { return rdm_pool_write_state(p, 7, nullptr, 0, &n); }},
           {"get_state", [&] { return rdm_pool_write_state(p, 0, &byte, 1, &n); }},
           {"set_state", [&] { return rdm_pool_read_state(p, 0, &byte, 1); }},
           {"hash", [&] { return rdm_pool_get_hash(p, -2, nullptr); }},
           {"shape", [&] { return rdm_pool_shape_at(p, 9999, &shape); }},
-          {"poses", [&] { return rdm_pool_poses(p, 2, &number); }},
-          {"contacts", [&] { return rdm_pool_contacts(p, 0, nullptr, -1, &count); }},
+          {"poses", [&] { return rdm_pool_get_poses(p, 2, &pose); }},
+          {"contacts", [&] { return rdm_pool_get_contacts(p, 0, nullptr, 1, &n); }},
           {"render", [&] { return rdm_pool_render(p, 0, "nowhere", 8, 8, nullptr, nullptr, nullptr); }},
           {"get_stats", [&] { return rdm_pool_get_stats(p, nullptr); }},
           {"sensors", [&] { return rdm_pool_get_sensors(p, nullptr); }},

@@ -70,7 +70,7 @@ class CreateIn : public testing::TestWithParam<size_t> {
   static std::vector<unsigned char> play(rdm_pool* p) {
     EXPECT_EQ(rdm_pool_reset(p, nullptr, nullptr), RDM_OK) << rdm_last_error();
     size_t size = 0;
-    EXPECT_EQ(rdm_pool_state_size(p, -1, &size), RDM_OK);
+    EXPECT_EQ(rdm_pool_write_state(p, -1, nullptr, 0, &size), RDM_OK);
     std::vector<unsigned char> state(size);
     for (int i = 0; i < 20; ++i) {
       EXPECT_EQ(rdm_pool_baseline(p, RDM_BASELINE_RANDOM), RDM_OK);

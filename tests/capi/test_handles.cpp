@@ -76,6 +76,7 @@ char g_bytes[1 << 16];
 size_t g_size;
 float g_floats[4096];
 double g_three[3] = {0, 0, 1};
+rdm_pose g_poses[256];
 int32_t g_number;
 uint64_t g_hash;
 const char* g_key;
@@ -116,13 +117,13 @@ const std::vector<Call> kPoolCalls = {
     CALL(rdm_pool_step(POOL)),
     CALL(rdm_pool_step_masked(POOL, reinterpret_cast<const uint8_t*>(g_bytes))),
     CALL(rdm_pool_baseline(POOL, 0)),
-    CALL(rdm_pool_state_size(POOL, 0, &g_size)),
+    CALL(rdm_pool_write_state(POOL, 0, nullptr, 0, &g_size)),
     CALL(rdm_pool_write_state(POOL, 0, g_bytes, sizeof g_bytes, &g_size)),
     CALL(rdm_pool_read_state(POOL, 0, g_bytes, 8)),
     CALL(rdm_pool_get_hash(POOL, 0, &g_hash)),
     CALL(rdm_pool_shape_at(POOL, 0, sized<rdm_shape_info>())),
-    CALL(rdm_pool_poses(POOL, 0, g_floats)),
-    CALL(rdm_pool_contacts(POOL, 0, nullptr, 0, &g_number)),
+    CALL(rdm_pool_get_poses(POOL, 0, g_poses)),
+    CALL(rdm_pool_get_contacts(POOL, 0, nullptr, 0, &g_size)),
     CALL(rdm_pool_render(POOL, 0, "front", 8, 8, nullptr, g_floats, nullptr)),
     CALL(rdm_pool_get_stats(POOL, sized<rdm_pool_stats>())),
     CALL(rdm_pool_push(POOL, 0, 0, g_floats)),
@@ -178,10 +179,10 @@ const std::vector<Call> kMapCalls = {
     CALL(rdm_map_scan(MAP, good.pool, 0, "front", 8, 8, nullptr, 0, nullptr)),
     CALL(rdm_map_query(MAP, g_floats, 1, g_floats + 100)),
     CALL(rdm_map_box(MAP, g_floats, g_floats, nullptr, 0, &g_size)),
-    CALL(rdm_map_meets(MAP, g_floats, g_floats, &g_number)),
+    CALL(rdm_map_meets(MAP, g_poses, g_floats, &g_number)),
     CALL(rdm_map_raycast(MAP, g_floats, g_floats, 1, 0, g_floats + 100, &g_number)),
     CALL(rdm_map_distance(MAP, g_floats, 1, 1, g_floats + 100)),
-    CALL(rdm_map_grid(MAP, g_floats, plain<std::array<int32_t, 3>>()->data(), 1,
+    CALL(rdm_map_grid(MAP, g_poses, plain<std::array<int32_t, 3>>()->data(), 1,
                       reinterpret_cast<int8_t*>(g_bytes))),
     CALL(rdm_map_write(MAP, 0, nullptr, 0, &g_size)),
     CALL(rdm_map_write_file(MAP, "/no/such/folder/file.bt")),

@@ -238,7 +238,7 @@ TEST(InUse, ManyMayRead) {
       size_t size = 0;
       EXPECT_EQ(rdm_pool_get_hash(pool, -1, &hash), RDM_OK);
       EXPECT_EQ(hash, wanted);
-      EXPECT_EQ(rdm_pool_state_size(pool, 9, &size), RDM_ERROR_RANGE);
+      EXPECT_EQ(rdm_pool_write_state(pool, 9, nullptr, 0, &size), RDM_ERROR_RANGE);
       rdm_recording_info info{};
       info.struct_size = sizeof info;
       EXPECT_EQ(rdm_recording_get_info(recording, &info), RDM_OK);

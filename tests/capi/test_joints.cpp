@@ -69,9 +69,9 @@ struct JointsPool {
     return rdm_pool_set_joints(p, env, x.empty() ? nullptr : x.data(), rate.empty() ? nullptr : rate.data(),
                                n);
   }
-  std::vector<float> poses(int32_t env = 0) const {
-    std::vector<float> out(7 * static_cast<size_t>(spec.num_shapes));
-    EXPECT_EQ(rdm_pool_poses(p, env, out.data()), RDM_OK);
+  std::vector<rdm_pose> poses(int32_t env = 0) const {
+    std::vector<rdm_pose> out(static_cast<size_t>(spec.num_shapes));
+    EXPECT_EQ(rdm_pool_get_poses(p, env, out.data()), RDM_OK);
     return out;
   }
   std::vector<float> obs(int32_t env = 0) const {
@@ -166,14 +166,15 @@ TEST_P(Joints, TheWorldFollows) {
   to.play(1);
   ASSERT_EQ(to.set(from.q(), from.qd()), RDM_OK) << rdm_pool_error(to.p);
   // robots that stand on a base that is fixed have the other's poses
-  const std::vector<float> a = from.poses(), b = to.poses();
+  const std::vector<rdm_pose> a = from.poses(), b = to.poses();
   const std::string task = GetParam().task;
   for (int32_t i = 0; i < from.spec.num_shapes && (task == "grasp" || task.rfind("hand_over", 0) == 0); ++i) {
     rdm_shape_info shape = RDM_INIT(rdm_shape_info);
     ASSERT_EQ(rdm_pool_shape_at(from.p, i, &shape), RDM_OK);
     if (std::strncmp(shape.name, "right_", 6) != 0 && std::strncmp(shape.name, "left_", 5) != 0) continue;
-    for (size_t k = 0; k < 7; ++k)
-      EXPECT_NEAR(a[7 * static_cast<size_t>(i) + k], b[7 * static_cast<size_t>(i) + k], 2e-5) << shape.name;
+    const rdm_pose &at = a[static_cast<size_t>(i)], &there = b[static_cast<size_t>(i)];
+    for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(at.p[k], there.p[k], 2e-5) << shape.name;
+    for (size_t k = 0; k < 4; ++k) EXPECT_NEAR(at.q[k], there.q[k], 2e-5) << shape.name;
   }
   const std::vector<float> after = to.obs();
   EXPECT_TRUE(!moves || after != before);
@@ -183,7 +184,7 @@ TEST_P(Joints, TheWorldFollows) {
   for (const float x : after) EXPECT_TRUE(std::isfinite(x));
 
   size_t size = 0;
-  ASSERT_EQ(rdm_pool_state_size(to.p, 0, &size), RDM_OK);
+  ASSERT_EQ(rdm_pool_write_state(to.p, 0, nullptr, 0, &size), RDM_OK);
   std::vector<unsigned char> state(size);
   ASSERT_EQ(rdm_pool_write_state(to.p, 0, state.data(), size, &size), RDM_OK);
   ASSERT_EQ(rdm_pool_read_state(twin.p, 0, state.data(), size), RDM_OK) << rdm_pool_error(twin.p);

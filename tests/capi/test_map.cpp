@@ -106,17 +106,17 @@ TEST(Map, GridBoxAndTurnedBoxAgree) {
   EXPECT_NEAR(voxel[0].centre[0], 0.55f, 1e-6f);
   EXPECT_NEAR(voxel[0].side, 0.1f, 1e-6f);
   // a quarter turn about z: the frame's x is the world's y
-  const float pose[7] = {0.05f, 0.55f, 0.05f, 0, 0, std::sqrt(0.5f), std::sqrt(0.5f)},
-              thin[3] = {0.45f, 0.01f, 0.01f};
+  const rdm_pose pose = {{0.05, 0.55, 0.05}, {0, 0, std::sqrt(0.5), std::sqrt(0.5)}};
+  const float thin[3] = {0.45f, 0.01f, 0.01f};
   int32_t meets = -1;
-  ASSERT_EQ(rdm_map_meets(map.m, pose, thin, &meets), RDM_OK);
+  ASSERT_EQ(rdm_map_meets(map.m, &pose, thin, &meets), RDM_OK);
   EXPECT_EQ(meets, 1);
   const float short_one[3] = {0.3f, 0.01f, 0.01f};
-  ASSERT_EQ(rdm_map_meets(map.m, pose, short_one, &meets), RDM_OK);
+  ASSERT_EQ(rdm_map_meets(map.m, &pose, short_one, &meets), RDM_OK);
   EXPECT_EQ(meets, 0);
   const int32_t n[3] = {9, 1, 1};
   int8_t grid[9];
-  ASSERT_EQ(rdm_map_grid(map.m, pose, n, 0.1f, grid), RDM_OK);
+  ASSERT_EQ(rdm_map_grid(map.m, &pose, n, 0.1f, grid), RDM_OK);
   for (int i = 0; i < 8; ++i) EXPECT_EQ(grid[i], 0) << i;
   EXPECT_EQ(grid[8], 1);
 }
@@ -124,8 +124,8 @@ TEST(Map, GridBoxAndTurnedBoxAgree) {
 // A depth camera says 0 where it saw nothing, rdm_pool_render too: unprojected that is the camera's own place.
 TEST(Map, WhatIsNearerThanAVoxelIsNoObstacle) {
   const MapHandle map(0.02);
-  const float origin[3] = {0, 0, 0.5f}, ahead[3] = {1, 0, 0}, pose[7] = {0, 0, 0.5f, 0, 0, 0, 1},
-              half[3] = {0.05f, 0.05f, 0.05f};
+  const float origin[3] = {0, 0, 0.5f}, ahead[3] = {1, 0, 0}, half[3] = {0.05f, 0.05f, 0.05f};
+  const rdm_pose pose = {{0, 0, 0.5}, {}};  // a q of all 0 is no turn
   const float points[4][3] = {{1, 0, 0.5f}, {0, 0, 0.5f}, {0.015f, 0, 0.5f}, {0, -0.019f, 0.5f}};
   ASSERT_EQ(rdm_map_insert(map.m, origin, points[0], 4, nullptr), RDM_OK);
   float hit[3] = {}, p = 0;
@@ -135,7 +135,7 @@ TEST(Map, WhatIsNearerThanAVoxelIsNoObstacle) {
   EXPECT_NEAR(hit[0], 1, 0.02);
   ASSERT_EQ(rdm_map_query(map.m, origin, 1, &p), RDM_OK);
   EXPECT_LT(p, 0.5f) << "the ray to the wall clears it";
-  ASSERT_EQ(rdm_map_meets(map.m, pose, half, &found), RDM_OK);
+  ASSERT_EQ(rdm_map_meets(map.m, &pose, half, &found), RDM_OK);
   EXPECT_EQ(found, 0);
   const float near[3] = {0, 0.03f, 0.5f};  // further than a voxel: it is one
   ASSERT_EQ(rdm_map_insert(map.m, origin, near, 1, nullptr), RDM_OK);
@@ -221,7 +221,8 @@ TEST(Map, BadArgumentsGetAnswersAndNothingIsPrinted) {
   EXPECT_EQ(rdm_map_create(&m, &c), RDM_ERROR_RANGE);
   EXPECT_STREQ(rdm_last_error(), "memory: 1 is outside [1048576, 68719476736]");
   EXPECT_EQ(m, nullptr);
-  const float p[3] = {0, 0, 0}, nan[3] = {NAN, 0, 0}, pose[7] = {0, 0, 0, 0, 0, 0, 1}, no_pose[7] = {};
+  const float p[3] = {0, 0, 0}, nan[3] = {NAN, 0, 0}, ahead[3] = {0, 0, 1};
+  const rdm_pose pose{}, no_pose = {{0, 0, 0}, {0, 0, 0, 0.5}}, nowhere = {{NAN, 0, 0}, {}};
   float out[3];
   int8_t cell;
   int32_t flag, n[3] = {1, 1, 1}, none[3] = {0, 1, 1};
@@ -242,15 +243,16 @@ TEST(Map, BadArgumentsGetAnswersAndNothingIsPrinted) {
   EXPECT_EQ(out[0], -1);
   EXPECT_EQ(rdm_map_box(map.m, p, nan, nullptr, 0, &count), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_map_box(map.m, p, p, nullptr, 1, &count), RDM_ERROR_ARGUMENT);
-  EXPECT_EQ(rdm_map_meets(map.m, no_pose, p, &flag), RDM_ERROR_ARGUMENT);
-  EXPECT_EQ(rdm_map_meets(map.m, pose, nan, &flag), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_map_meets(map.m, &no_pose, p, &flag), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_map_meets(map.m, &nowhere, p, &flag), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_map_meets(map.m, &pose, nan, &flag), RDM_ERROR_RANGE);
   EXPECT_EQ(rdm_map_raycast(map.m, p, p, 1, 1, out, &flag), RDM_ERROR_ARGUMENT);
-  EXPECT_EQ(rdm_map_raycast(map.m, p, pose + 4, NAN, 1, out, &flag), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_map_raycast(map.m, p, ahead, NAN, 1, out, &flag), RDM_ERROR_RANGE);
   EXPECT_EQ(rdm_map_distance(map.m, nan, 1, 1, out), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_map_distance(map.m, p, 1, 0, out), RDM_ERROR_RANGE);
-  EXPECT_EQ(rdm_map_grid(map.m, pose, none, 0.1f, &cell), RDM_ERROR_RANGE);
-  EXPECT_EQ(rdm_map_grid(map.m, pose, n, 0, &cell), RDM_ERROR_RANGE);
-  EXPECT_EQ(rdm_map_grid(map.m, pose, n, 0.1f, &cell), RDM_OK);
+  EXPECT_EQ(rdm_map_grid(map.m, &pose, none, 0.1f, &cell), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_map_grid(map.m, &pose, n, 0, &cell), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_map_grid(map.m, &pose, n, 0.1f, &cell), RDM_OK);
   EXPECT_EQ(rdm_map_write(map.m, 2, nullptr, 0, &count), RDM_ERROR_RANGE);
   EXPECT_EQ(rdm_map_read(map.m, nullptr, 0), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_map_read(map.m, "x", 1), RDM_ERROR_FORMAT);

@@ -143,9 +143,7 @@ TEST_F(OwnCameras, CloudsVoxelsAndMapsStandWhereThePictureShowsThem) {
   redman::check(rdm_map_distance(map.get(), s.points, distance.size(), 1, distance.data()));
   for (const float d : distance) EXPECT_LT(d, 0.011f) << "the map has a voxel at each point of the cloud";
 
-  std::vector<float> pose(7 * static_cast<size_t>(worlds.spec().num_shapes));
-  redman::check(rdm_pool_poses(worlds.get(), 0, pose.data()));
-  const float* ball = pose.data() + 7;  // about which the voxels are
+  const rdm_pose ball = worlds.poses()[1];  // about which the voxels are
   int occupied = 0;
   const auto middle = [&](int32_t i) { return (static_cast<float>(i) - 3.5f) * s.voxel_size; };
   for (int32_t x = 0, at = 0; x < 8; ++x)
@@ -153,7 +151,9 @@ TEST_F(OwnCameras, CloudsVoxelsAndMapsStandWhereThePictureShowsThem) {
       for (int32_t z = 0; z < 8; ++z, ++at) {
         if (s.voxels[at] != 1) continue;
         ++occupied;
-        const float p[3] = {ball[0] + middle(x), ball[1] + middle(y), ball[2] + middle(z)};
+        const float p[3] = {static_cast<float>(ball.p[0]) + middle(x),
+                            static_cast<float>(ball.p[1]) + middle(y),
+                            static_cast<float>(ball.p[2]) + middle(z)};
         float near = 0;
         redman::check(rdm_map_distance(map.get(), p, 1, 1, &near));
         EXPECT_LT(near, s.voxel_size) << x << ' ' << y << ' ' << z;

@@ -86,7 +86,8 @@ TEST(Objects, EveryOneCanBeMadeAgain) {
     for (int k = 0; k < 6; ++k) EXPECT_EQ(again.def.moment[k], d.def.moment[k]) << object.name;
     for (size_t k = 0; k < d.shapes.size(); ++k) {
       EXPECT_EQ(again.shapes[k].kind, d.shapes[k].kind);
-      EXPECT_EQ(std::memcmp(again.shapes[k].p, d.shapes[k].p, sizeof d.shapes[k].p), 0) << object.name;
+      EXPECT_EQ(std::memcmp(again.shapes[k].pose.p, d.shapes[k].pose.p, sizeof d.shapes[k].pose.p), 0)
+          << object.name;
       EXPECT_EQ(again.shapes[k].num_points, d.shapes[k].num_points);
     }
     EXPECT_EQ(rdm_object_destroy(made), RDM_OK);
@@ -172,7 +173,7 @@ TEST(Objects, RefusalsNameTheRow) {
           [](auto&, auto* s) { s[1].kind = RDM_SHAPE_HULL, s[1].num_points = 3; });
   refused(RDM_ERROR_ARGUMENT, "shapes[1].points is NULL",
           [](auto&, auto* s) { s[1].kind = RDM_SHAPE_HULL, s[1].num_points = 8; });
-  refused(RDM_ERROR_ARGUMENT, "place is not finite", [&](auto&, auto* s) { s[0].p[1] = nan; });
+  refused(RDM_ERROR_ARGUMENT, "place is not finite", [&](auto&, auto* s) { s[0].pose.p[1] = nan; });
   refused(RDM_ERROR_ARGUMENT, "triangle rule",
           [](auto& d, auto*) { d.moment[0] = d.moment[1] = 1e-4, d.moment[2] = 3e-4; });
   int32_t object = -1;
@@ -210,25 +211,25 @@ rdm_result build(void* user, rdm_scene* scene, void*) {
   int32_t mug = -1, ball = -1;
   rdm_object_find("025_mug", &mug);
   rdm_object_find("golf_ball", &ball);
-  const double p[3] = {0, 0, 0.1}, q[4] = {}, aside[3] = {0.3, 0, 0.1};
-  if (r == RDM_OK) r = rdm_scene_add_object(scene, mug, "mug", p, q, 1, &seen.mug);
-  if (r == RDM_OK) r = rdm_scene_add_object(scene, ball, "ball", aside, q, 2, &seen.ball);
+  const rdm_pose above = {{0, 0, 0.1}, {}}, aside = {{0.3, 0, 0.1}, {}};
+  if (r == RDM_OK) r = rdm_scene_add_object(scene, mug, "mug", &above, 1, &seen.mug);
+  if (r == RDM_OK) r = rdm_scene_add_object(scene, ball, "ball", &aside, 2, &seen.ball);
   const auto note = [&](int i, rdm_result code) {
     seen.bad[i] = code;
     seen.texts[i] = rdm_last_error();
   };
-  note(0, rdm_scene_add_object(scene, mug, "mug", p, q, 1, nullptr));
-  note(1, rdm_scene_add_object(scene, 100000, "other", p, q, 1, nullptr));
-  note(2, rdm_scene_add_object(scene, mug, "other", p, q, 0, nullptr));
-  note(3, rdm_scene_add_object(scene, mug, nullptr, p, q, 1, nullptr));
-  note(4, rdm_scene_add_object(scene, mug, "other", nullptr, q, 1, nullptr));
+  note(0, rdm_scene_add_object(scene, mug, "mug", &above, 1, nullptr));
+  note(1, rdm_scene_add_object(scene, 100000, "other", &above, 1, nullptr));
+  note(2, rdm_scene_add_object(scene, mug, "other", &above, 0, nullptr));
+  note(3, rdm_scene_add_object(scene, mug, nullptr, &above, 1, nullptr));
+  note(4, rdm_scene_add_object(scene, mug, "other", nullptr, 1, nullptr));
   // materials came along: "metal" of the mug, "plastic" of the ball
   int32_t metal = -1, plastic = -1;
   if (r == RDM_OK) r = rdm_scene_find(scene, RDM_SCENE_MATERIAL, "metal", &metal);
   if (r == RDM_OK) r = rdm_scene_find(scene, RDM_SCENE_MATERIAL, "plastic", &plastic);
   if (r == RDM_OK && (metal != 1 || plastic != 2)) r = rdm_fail(RDM_ERROR_INTERNAL, "materials");
   if (r == RDM_OK) r = rdm_scene_add_touch(scene, "mug", "ground", &seen.touch);
-  note(5, rdm_scene_add_object(scene, mug, "late", p, q, 1, nullptr));
+  note(5, rdm_scene_add_object(scene, mug, "late", &above, 1, nullptr));
   return r;
 }
 rdm_result reset(void*, const void*, rdm_world*, void*, rdm_random*) {
@@ -243,7 +244,7 @@ rdm_result judge(void* user, const void*, rdm_world* world, void*, int32_t, rdm_
   rdm_motion m;
   rdm_result r = rdm_world_get_touch(world, seen.touch, nullptr, &force);
   if (r == RDM_OK) r = rdm_world_get_body(world, seen.mug, &m);
-  seen.mug_height = m.p[2];
+  seen.mug_height = m.pose.p[2];
   v->reward = seen.rest = force;
   return r;
 }

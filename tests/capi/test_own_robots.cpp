@@ -72,10 +72,16 @@ struct Robots {  // removes what it made
   }
 };
 
+// 7 doubles of each link.
 std::vector<double> poses_of(int32_t robot, const std::vector<double>& q) {
-  std::vector<double> poses(7 * q.size());
-  EXPECT_EQ(rdm_robot_kinematics(robot, q.data(), poses.data(), nullptr, nullptr, nullptr), RDM_OK);
-  return poses;
+  std::vector<rdm_pose> links(q.size());
+  EXPECT_EQ(rdm_robot_kinematics(robot, q.data(), links.data(), nullptr, nullptr, nullptr), RDM_OK);
+  std::vector<double> out;
+  for (const rdm_pose& X : links) {
+    out.insert(out.end(), X.p, X.p + 3);
+    out.insert(out.end(), X.q, X.q + 4);
+  }
+  return out;
 }
 
 TEST(Robots, EveryOneCanBeMadeAgain) {
@@ -98,7 +104,7 @@ TEST(Robots, EveryOneCanBeMadeAgain) {
     ASSERT_EQ(again.links.size(), own.links.size());
     for (size_t i = 0; i < own.links.size(); ++i) {
       EXPECT_STREQ(again.links[i].joint, own.links[i].joint);
-      EXPECT_EQ(std::memcmp(again.links[i].q, own.links[i].q, sizeof own.links[i].q), 0);
+      EXPECT_EQ(std::memcmp(again.links[i].pose.q, own.links[i].pose.q, sizeof own.links[i].pose.q), 0);
       EXPECT_EQ(again.links[i].kp, own.links[i].kp);
     }
   }
@@ -133,8 +139,8 @@ rdm_robot_link hinge() {
   l.name = "rod";
   l.joint = "hinge";
   l.parent = RDM_LINK_ROOT;
-  l.p[2] = 0.5;
-  l.q[3] = 1;
+  l.pose.p[2] = 0.5;
+  l.pose.q[3] = 1;
   l.axis[0] = 1;
   l.lower = -1;
   l.upper = 2;
@@ -155,7 +161,7 @@ rdm_robot_def pendulum(const rdm_robot_link* link) {
   d.links = link;
   d.num_links = 1;
   d.flange_link = 0;
-  d.flange_p[2] = 0.4;
+  d.flange.p[2] = 0.4;
   return d;
 }
 
@@ -173,13 +179,13 @@ TEST(Robots, AHandOnAnArmIsARobot) {
   // the hand's root in the rod
   EXPECT_NEAR(own.links[0].mass, 2 + hand.def.root_mass, 1e-12);
   // the tip of a finger: the arm's flange, the plate, the turn, and the hand's own place
-  std::vector<double> q(own.links.size(), 0.0), tips(3 * own.fingers.size()), poses(7 * q.size());
-  std::vector<double> hand_tips(tips.size()), hand_poses(7 * hand.links.size());
-  ASSERT_EQ(rdm_robot_kinematics(both, q.data(), poses.data(), nullptr, tips.data(), nullptr), RDM_OK);
-  ASSERT_EQ(rdm_robot_kinematics(0, q.data(), hand_poses.data(), nullptr, hand_tips.data(), nullptr), RDM_OK);
+  std::vector<double> q(own.links.size(), 0.0), tips(3 * own.fingers.size()), hand_tips(tips.size());
+  std::vector<rdm_pose> links(own.links.size());
+  ASSERT_EQ(rdm_robot_kinematics(both, q.data(), links.data(), nullptr, tips.data(), nullptr), RDM_OK);
+  ASSERT_EQ(rdm_robot_kinematics(0, q.data(), links.data(), nullptr, hand_tips.data(), nullptr), RDM_OK);
   for (size_t i = 0; i < own.fingers.size(); ++i) {
-    const double x = hand_tips[3 * i] - hand.def.mount_p[0], y = hand_tips[3 * i + 1] - hand.def.mount_p[1],
-                 z = hand_tips[3 * i + 2] - hand.def.mount_p[2];
+    const double x = hand_tips[3 * i] - hand.def.mount.p[0], y = hand_tips[3 * i + 1] - hand.def.mount.p[1],
+                 z = hand_tips[3 * i + 2] - hand.def.mount.p[2];
     EXPECT_NEAR(tips[3 * i], std::cos(0.3) * x - std::sin(0.3) * y, 1e-12);
     EXPECT_NEAR(tips[3 * i + 1], std::sin(0.3) * x + std::cos(0.3) * y, 1e-12);
     EXPECT_NEAR(tips[3 * i + 2], 0.5 + 0.4 + 0.02 + z, 1e-12);
@@ -190,23 +196,45 @@ TEST(Robots, AHandOnAnArmIsARobot) {
   EXPECT_EQ(rdm_robot_create_mounted(&both, "again", arm, 0, NAN, 0, 0), RDM_ERROR_ARGUMENT);
 }
 
+// In the place of a rotation all 0 is none, and what comes back is a unit quaternion.
+TEST(Robots, ARotationMayBeLeftOut) {
+  Robots robots;
+  rdm_robot_link link = hinge();
+  std::fill_n(link.pose.q, 4, 0.0);
+  rdm_robot_def def = pendulum(&link);
+  def.mount.q[3] = 0;
+  const int32_t arm = robots.create(def);
+  rdm_robot_link back;
+  ASSERT_EQ(rdm_robot_link_at(arm, 0, &back), RDM_OK);
+  EXPECT_EQ(back.pose.q[3], 1);
+  rdm_robot_def whole;
+  rdm_robot_def_init(&whole, sizeof whole);
+  ASSERT_EQ(rdm_robot_get_def(arm, &whole), RDM_OK);
+  EXPECT_EQ(whole.mount.q[3], 1);
+}
+
 TEST(Robots, AFlangeIsReachedOrNot) {
   Robots robots;
   const rdm_robot_link link = hinge();
   const int32_t arm = robots.create(pendulum(&link));
-  double pose[7], poses[7], q = 0.8;
-  ASSERT_EQ(rdm_robot_kinematics(arm, &q, poses, pose, nullptr, nullptr), RDM_OK);
+  rdm_pose goal, rod;
+  double q = 0.8;
+  ASSERT_EQ(rdm_robot_kinematics(arm, &q, &rod, &goal, nullptr, nullptr), RDM_OK);
   int32_t found = -1;
   q = 0.1;
-  ASSERT_EQ(rdm_robot_reach(arm, pose, &q, &found), RDM_OK);
+  ASSERT_EQ(rdm_robot_reach(arm, &goal, &q, &found), RDM_OK);
   EXPECT_EQ(found, 1);
   EXPECT_NEAR(q, 0.8, 1e-5);
-  pose[0] += 0.2;  // beside the plane it swings in
-  ASSERT_EQ(rdm_robot_reach(arm, pose, &q, &found), RDM_OK);
+  goal.p[0] += 0.2;  // beside the plane it swings in
+  ASSERT_EQ(rdm_robot_reach(arm, &goal, &q, &found), RDM_OK);
   EXPECT_EQ(found, 0);
   q = NAN;
-  EXPECT_EQ(rdm_robot_reach(arm, pose, &q, &found), RDM_ERROR_ARGUMENT);
-  EXPECT_EQ(rdm_robot_reach(0, pose, &q, &found), RDM_ERROR_UNSUPPORTED);
+  EXPECT_EQ(rdm_robot_reach(arm, &goal, &q, &found), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_robot_reach(0, &goal, &q, &found), RDM_ERROR_UNSUPPORTED);
+  q = 0.1;
+  goal.q[0] = 2;
+  EXPECT_EQ(rdm_robot_reach(arm, &goal, &q, &found), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_robot_reach(arm, nullptr, &q, &found), RDM_ERROR_ARGUMENT);
 }
 
 // What is wrong is named.
@@ -236,7 +264,7 @@ TEST(Robots, BadOnesAreRefusedByName) {
           [](D&, L& l) { l.mass = std::numeric_limits<double>::infinity(); });
   refused(RDM_ERROR_RANGE, "hinge: the range [2, 2] is empty", [](D&, L& l) { l.lower = 2; });
   refused(RDM_ERROR_ARGUMENT, "axis has length 0", [](D&, L& l) { l.axis[0] = 0; });
-  refused(RDM_ERROR_ARGUMENT, "quaternion", [](D&, L& l) { l.q[3] = 2; });
+  refused(RDM_ERROR_ARGUMENT, "quaternion", [](D&, L& l) { l.pose.q[3] = 2; });
   refused(RDM_ERROR_RANGE, "kind", [](D& d, L&) { d.kind = 3; });
   refused(RDM_ERROR_RANGE, "flange", [](D& d, L&) { d.flange_link = 1; });
   refused(RDM_ERROR_ARGUMENT, "a hand has a palm", [](D& d, L&) { d.kind = RDM_ROBOT_HAND; });
@@ -254,7 +282,7 @@ TEST(Robots, PairsAreAllButNeighbours) {
     shapes[i].name = names[i];
     shapes[i].kind = RDM_SHAPE_SPHERE;
     shapes[i].size[0] = 0.01;
-    shapes[i].q[3] = 1;
+    shapes[i].pose.q[3] = 1;
     shapes[i].link = i - 1;
   }
   rdm_robot_def d = pendulum(links);

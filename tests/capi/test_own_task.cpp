@@ -174,7 +174,7 @@ TEST(OwnTask, GoesOnFromAState) {
   Rows a("own_state", 3), b("own_state", 3);
   a.step(17);
   size_t size = 0;
-  ASSERT_EQ(rdm_pool_state_size(a.pool, -1, &size), RDM_OK);
+  ASSERT_EQ(rdm_pool_write_state(a.pool, -1, nullptr, 0, &size), RDM_OK);
   std::vector<unsigned char> bytes(size);
   ASSERT_EQ(rdm_pool_write_state(a.pool, -1, bytes.data(), size, &size), RDM_OK);
   ASSERT_EQ(rdm_pool_read_state(b.pool, -1, bytes.data(), size), RDM_OK) << rdm_last_error();
@@ -331,7 +331,7 @@ TEST(OwnTask, WorldsHaveConstantsOfTheirOwn) {
       sphere.kind = RDM_SHAPE_SPHERE, sphere.size[0] = 0.05;
       rdm_body_def ball{};
       ball.struct_size = sizeof ball, ball.name = "ball", ball.shapes = &sphere, ball.num_shapes = 1;
-      ball.mass = 0.5 * (by_world ? 1 : factor), ball.p[2] = 0.05;
+      ball.mass = 0.5 * (by_world ? 1 : factor), ball.pose.p[2] = 0.05;
       rdm_shape_def ground{};
       ground.name = "ground", ground.kind = RDM_SHAPE_PLANE;
       rdm_result r = rdm_scene_set_adjustable(scene);
@@ -356,7 +356,7 @@ TEST(OwnTask, WorldsHaveConstantsOfTheirOwn) {
     t.def.observe = [](void*, const void* instance, const rdm_world* world, const void*, float* obs) {
       rdm_motion m;
       const rdm_result r = rdm_world_get_body(world, static_cast<const BallIds*>(instance)->ball, &m);
-      for (int i = 0; i < kBallObs; ++i) obs[i] = i < 3 ? static_cast<float>(m.p[i]) : 0;
+      for (int i = 0; i < kBallObs; ++i) obs[i] = i < 3 ? static_cast<float>(m.pose.p[i]) : 0;
       return r;
     };
     const Registered made(t.def);

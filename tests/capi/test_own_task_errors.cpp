@@ -123,7 +123,7 @@ rdm_result simple_scene(rdm_scene* scene) {
   if (const rdm_result r = rdm_scene_add_body(scene, &body, nullptr)) return r;
   rdm_scene_robot hand;
   rdm_scene_robot_init(&hand, sizeof hand);
-  hand.name = "hand", hand.p[2] = 1;
+  hand.name = "hand", hand.pose.p[2] = 1;
   if (const rdm_result r = rdm_robot_find("shadow_hand", &hand.robot)) return r;
   return rdm_scene_add_robot(scene, &hand, nullptr);
 }
@@ -180,7 +180,7 @@ std::function<rdm_result(rdm_scene*)> with_robot(std::function<void(rdm_scene_ro
     if (const rdm_result r = simple_scene(scene)) return r;
     rdm_scene_robot hand;
     rdm_scene_robot_init(&hand, sizeof hand);
-    hand.name = "other", hand.p[0] = 1;
+    hand.name = "other", hand.pose.p[0] = 1;
     rdm_robot_find("shadow_hand", &hand.robot);
     change(hand);
     return rdm_scene_add_robot(scene, &hand, nullptr);
@@ -226,7 +226,7 @@ TEST(OwnTaskErrors, OfScenes) {
       {RDM_ERROR_ARGUMENT,
        "body cup: its shapes' centre of mass is at (0, 0, 0.1), not at the origin: move them, or give "
        "moments",
-       with_body([](auto&, auto& s) { s.p[2] = 0.1; })},
+       with_body([](auto&, auto& s) { s.pose.p[2] = 0.1; })},
       {RDM_ERROR_RANGE, "shape cup: a size or its place is not within bounds",
        with_body([](auto&, auto& s) { s.size[1] = 0; })},
       {RDM_ERROR_RANGE, "cup: half size 0 is outside [1e-06, 1000]", with_body([](auto& b, auto& s) {
@@ -236,8 +236,9 @@ TEST(OwnTaskErrors, OfScenes) {
       {RDM_ERROR_ARGUMENT, "cup: moment of inertia is not positive definite",
        with_body([](auto& b, auto&) { b.moment[0] = -1; })},
       {RDM_ERROR_ARGUMENT, "cup: the quaternion is not a unit one",
-       with_body([](auto& b, auto&) { b.q[0] = 2; })},
-      {RDM_ERROR_ARGUMENT, "cup: position is not finite", with_body([](auto& b, auto&) { b.p[0] = NAN; })},
+       with_body([](auto& b, auto&) { b.pose.q[0] = 2; })},
+      {RDM_ERROR_ARGUMENT, "cup: position is not finite",
+       with_body([](auto& b, auto&) { b.pose.p[0] = NAN; })},
       {RDM_ERROR_RANGE, "cup: linear_damping -1 is outside [0, 1e+06]",
        with_body([](auto& b, auto&) { b.linear_damping = -1; })},
       {RDM_ERROR_NOT_FOUND, "material ruber: unknown",
@@ -349,7 +350,8 @@ TEST(OwnTaskErrors, OfCallsInAWorld) {
       {RDM_ERROR_RANGE, "link: -1 is outside [0, 24)",
        [](auto* w) { return rdm_world_get_link(w, -1, &out); }},
       {RDM_ERROR_RANGE, "robot: 1 is outside [0, 1)", [](auto* w) { return rdm_world_get_base(w, 1, &out); }},
-      {RDM_ERROR_RANGE, "shape: 500 is outside", [](auto* w) { return rdm_world_get_shape(w, 500, x); }},
+      {RDM_ERROR_RANGE, "shape: 500 is outside",
+       [](auto* w) { return rdm_world_get_shape(w, 500, &out.pose); }},
       {RDM_ERROR_RANGE, "sensor: 5 is outside [0, 5)",
        [](auto* w) { return rdm_world_get_sensor(w, 5, x, x); }},
       {RDM_ERROR_RANGE, "group: 0 is outside [0, 0)",
@@ -357,13 +359,14 @@ TEST(OwnTaskErrors, OfCallsInAWorld) {
       {RDM_ERROR_ARGUMENT, "out is NULL", [](auto* w) { return rdm_world_get_body(w, 0, nullptr); }},
       {RDM_ERROR_ARGUMENT, "set_body: motion 0 has no unit quaternion",
        [](auto* w) {
-         const rdm_motion m{};
+         rdm_motion m{};
+         m.pose.q[0] = NAN;
          return rdm_world_set_body(w, 0, &m);
        }},
       {RDM_ERROR_ARGUMENT, "set_body: motion 0 is not finite or beyond 1e+06",
        [](auto* w) {
          rdm_motion m{};
-         m.q[3] = 1, m.v[1] = NAN;
+         m.pose.q[3] = 1, m.v[1] = NAN;
          return rdm_world_set_body(w, 0, &m);
        }},
       {RDM_ERROR_STATE, "robot hand: its base is fixed",
@@ -415,6 +418,16 @@ TEST(OwnTaskErrors, OfCallsInAWorld) {
     EXPECT_EQ(std::string(rdm_last_error()).substr(0, wanted.size()), wanted);
     std::printf("%s\n", rdm_last_error());
   }
+}
+
+TEST(OwnTaskErrors, APoseWithoutARotationIsTaken) {
+  Scripted script{simple_scene, [](rdm_world* w) {
+                    rdm_motion m{};
+                    if (const rdm_result r = rdm_world_set_body(w, 0, &m)) return r;
+                    if (const rdm_result r = rdm_world_get_body(w, 0, &m)) return r;
+                    return m.pose.q[3] == 1 ? RDM_OK : rdm_fail(RDM_ERROR_FORMAT, "it is turned");
+                  }};
+  EXPECT_EQ(try_task(&script), RDM_OK) << rdm_last_error();
 }
 
 // A handle that outlives its call is told so, as far as its memory is still there.

@@ -17,14 +17,14 @@ struct Lottery {
   explicit Lottery(const char* name) : task(name) {
     task.reset = [](rdm_world* world, rdm_random* random) {
       rdm_motion m{};
-      m.q[3] = 1, m.p[2] = 1 + rdm_random_uniform(random, 0, 1);
+      m.pose.q[3] = 1, m.pose.p[2] = 1 + rdm_random_uniform(random, 0, 1);
       return rdm_world_set_body(world, 0, &m);
     };
   }
   static bool chosen(const rdm_world* world) {
     rdm_motion m;
     EXPECT_EQ(rdm_world_get_body(world, 0, &m), RDM_OK);
-    return m.p[2] > 1.5;
+    return m.pose.p[2] > 1.5;
   }
 };
 
@@ -103,7 +103,7 @@ TEST(OwnTaskFailures, SameBytesForAnyThreads) {
         retried += (one.b.status[i] & RDM_STATUS_TASK) && one.text(i).find("no place") != std::string::npos;
       }
       size_t size = 0;
-      ASSERT_EQ(rdm_pool_state_size(one.pool, -1, &size), RDM_OK);
+      ASSERT_EQ(rdm_pool_write_state(one.pool, -1, nullptr, 0, &size), RDM_OK);
       std::vector<unsigned char> bytes(size);
       ASSERT_EQ(rdm_pool_write_state(one.pool, -1, bytes.data(), size, &size), RDM_OK);
       ASSERT_EQ(rdm_pool_read_state(again.pool, -1, bytes.data(), size), RDM_OK) << rdm_last_error();
@@ -309,15 +309,16 @@ TEST(OwnTaskBuilds, AFailedOneStaysFailed) {
     sphere.kind = RDM_SHAPE_SPHERE, sphere.size[0] = 0.05;
     rdm_body_def ball{};
     ball.struct_size = sizeof ball, ball.name = "other", ball.shapes = &sphere, ball.num_shapes = 1;
-    ball.mass = 0.1, ball.p[2] = 2;
+    ball.mass = 0.1, ball.pose.p[2] = 2;
     rdm_joint joint;
-    const double p[3] = {}, q[4] = {};
+    const double p[3] = {};
+    const rdm_pose pose{};
     later = {rdm_scene_add_body(scene, &ball, nullptr),
              rdm_scene_find(scene, RDM_SCENE_SHAPE, "x", &k),
              rdm_scene_joint_at(scene, 0, &joint),
              rdm_scene_add_touch(scene, "hand", "ball", &k),
              rdm_scene_add_material(scene, "wood"),
-             rdm_scene_add_object(scene, 0, "thing", p, q, 1, nullptr),
+             rdm_scene_add_object(scene, 0, "thing", &pose, 1, nullptr),
              rdm_scene_add_robot(scene, &hand, nullptr),
              rdm_scene_set_gravity(scene, p),
              rdm_scene_set_actions(scene, 2, nullptr, nullptr),
@@ -334,7 +335,7 @@ TEST(OwnTaskBuilds, AFailedOneStaysFailed) {
 TEST(OwnTaskBuilds, RefusedMemoryLeavesNoHalf) {
   Build b;
   b.task.build = [&](rdm_scene* scene) {
-    const double p[3] = {0, 0, 3}, q[4] = {};
+    const rdm_pose pose = {{0, 0, 3}, {}};
     rdm_scene_robot hand;
     rdm_scene_robot_init(&hand, sizeof hand);
     rdm_scene_add_material(scene, "wood");
@@ -342,9 +343,9 @@ TEST(OwnTaskBuilds, RefusedMemoryLeavesNoHalf) {
       hand.name = name;
       rdm_robot_find("allegro_hand", &hand.robot);
       rdm_scene_add_robot(scene, &hand, nullptr);
-      hand.p[0] = 1;
+      hand.pose.p[0] = 1;
     }
-    rdm_scene_add_object(scene, 0, "thing", p, q, 1, nullptr);
+    rdm_scene_add_object(scene, 0, "thing", &pose, 1, nullptr);
     int32_t k = 0;
     rdm_scene_find(scene, RDM_SCENE_BODY, "ball", &k);
     rdm_scene_add_touch(scene, "left*", "ball", &k);

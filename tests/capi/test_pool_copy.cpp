@@ -82,7 +82,7 @@ struct Worlds {
   }
   std::vector<unsigned char> state(int32_t env) const {
     size_t size = 0;
-    EXPECT_EQ(rdm_pool_state_size(pool, env, &size), RDM_OK);
+    EXPECT_EQ(rdm_pool_write_state(pool, env, nullptr, 0, &size), RDM_OK);
     std::vector<unsigned char> bytes(size);
     EXPECT_EQ(rdm_pool_write_state(pool, env, bytes.data(), size, &size), RDM_OK);
     return bytes;

@@ -135,13 +135,14 @@ TEST(PoolRay, ThreadsLookTogether) {
   std::vector<std::vector<double>> seen(4);
   for (auto& mine : seen)
     threads.emplace_back([&mine, p, s] {
-      std::vector<float> poses(7 * static_cast<size_t>(s.num_shapes));
+      std::vector<rdm_pose> poses(static_cast<size_t>(s.num_shapes));
       for (int i = 0; i < 200; ++i) {
         const double o[] = {0, -1, 0.5}, d[] = {0.01 * (i - 100), 1, 0.1};
         rdm_ray_hit hit = empty_hit();
-        if (rdm_pool_raycast(p, 0, o, d, 10, &hit) != RDM_OK || rdm_pool_poses(p, 0, poses.data()) != RDM_OK)
+        if (rdm_pool_raycast(p, 0, o, d, 10, &hit) != RDM_OK ||
+            rdm_pool_get_poses(p, 0, poses.data()) != RDM_OK)
           return;
-        mine.push_back(hit.shape + 0.001 * static_cast<double>(poses[0]));
+        mine.push_back(hit.shape + 0.001 * poses[0].p[0]);
       }
     });
   for (auto& t : threads) t.join();

@@ -18,8 +18,8 @@ TEST(RedmanMapHpp, AMapIsWrittenAskedAndKept) {
   EXPECT_NEAR(map.distance(between, 2), 0.5f, 0.05f);
   const float low[3] = {0.9f, -0.2f, -0.2f}, high[3] = {1.1f, 0.2f, 0.2f};
   EXPECT_EQ(map.box(low, high).size(), 2u);
-  const float pose[7] = {1, 0, 0, 0, 0, 0, 1}, aside[7] = {0.5f, 0, 0, 0, 0, 0, 1},
-              half[3] = {0.1f, 0.1f, 0.1f};
+  const rdm_pose pose = {{1, 0, 0}, {0, 0, 0, 1}}, aside = {{0.5, 0, 0}, {}};
+  const float half[3] = {0.1f, 0.1f, 0.1f};
   EXPECT_TRUE(map.meets(pose, half));
   EXPECT_FALSE(map.meets(aside, half));
   float hit[3];

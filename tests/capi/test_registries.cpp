@@ -29,7 +29,7 @@ size_t heap_in_use() {
 rdm_result add_robot(const char* name, int32_t* number) {
   rdm_robot_link link{};
   link.name = "link", link.joint = "joint", link.parent = RDM_LINK_ROOT;
-  link.q[3] = 1, link.axis[2] = 1, link.lower = -1, link.upper = 1;
+  link.pose.q[3] = 1, link.axis[2] = 1, link.lower = -1, link.upper = 1;
   link.kp = 1, link.kd = 0.1, link.effort = 1, link.mass = 1;
   for (int k = 0; k < 3; ++k) link.moment[k] = 0.1;
   rdm_robot_def d;
@@ -176,7 +176,8 @@ TEST(Registries, ANumberThatWasKeptTooLongIsRefusedEverywhere) {
     EXPECT_NE(std::string(rdm_last_error()).find(text), std::string::npos) << checked << rdm_last_error();
     ++checked;
   };
-  double q[64] = {}, poses[7 * 64];
+  double q[64] = {};
+  rdm_pose poses[64];
   int32_t found = 0, made = 0;
   rdm_robot r{sizeof r, 0, 0, 0, nullptr, nullptr};
   rdm_joint joint;
@@ -237,8 +238,8 @@ TEST(Registries, ANumberThatWasKeptTooLongIsRefusedEverywhere) {
     return rdm_scene_add_robot(s, &row, nullptr);
   };
   refused(gone[0], rdm_pool_create(&pool, &c));
-  const double p[3] = {0, 0, 1}, turn[4] = {};
-  scene.build = [&](rdm_scene* s) { return rdm_scene_add_object(s, object, "o", p, turn, 1, nullptr); };
+  const rdm_pose above{{0, 0, 1}, {}};
+  scene.build = [&](rdm_scene* s) { return rdm_scene_add_object(s, object, "o", &above, 1, nullptr); };
   refused(gone[1], rdm_pool_create(&pool, &c));
   EXPECT_EQ(checked, 28);
   // by name: the one that there is

@@ -58,7 +58,7 @@ void expect_same_again(const char* task, const char* settings) {
   EXPECT_EQ(settings_of(again), whole);
   EXPECT_EQ(hash_after_steps(again), hash_after_steps(p));
   size_t size = 0;
-  ASSERT_EQ(rdm_pool_state_size(p, -1, &size), RDM_OK);
+  ASSERT_EQ(rdm_pool_write_state(p, -1, nullptr, 0, &size), RDM_OK);
   std::vector<unsigned char> state(size);
   ASSERT_EQ(rdm_pool_write_state(p, -1, state.data(), size, &size), RDM_OK);
   EXPECT_EQ(rdm_pool_read_state(again, -1, state.data(), size), RDM_OK) << rdm_last_error();

@@ -54,7 +54,7 @@ rdm_result add_box(rdm_scene* scene, const char* name, double mass, double heigh
   box.kind = RDM_SHAPE_BOX, box.size[0] = box.size[1] = box.size[2] = 0.05;
   rdm_body_def body{};
   body.struct_size = sizeof body, body.name = name, body.shapes = &box, body.num_shapes = 1;
-  body.mass = mass, body.p[0] = 1, body.p[2] = height;
+  body.mass = mass, body.pose.p[0] = 1, body.pose.p[2] = height;
   return rdm_scene_add_body(scene, &body, nullptr);
 }
 
@@ -129,7 +129,7 @@ TEST(Trouble, AFirstObservationThatIsNotFiniteIsFlaggedAndMended) {
   p.expect_status(RDM_STATUS_DIVERGED, RDM_STATUS_DIVERGED);
   for (size_t e = 0; e < kWorlds; ++e) EXPECT_EQ(p.b.obs[e], 0);
   size_t size = 0;
-  EXPECT_EQ(rdm_pool_state_size(p.pool, -1, &size), RDM_OK);
+  EXPECT_EQ(rdm_pool_write_state(p.pool, -1, nullptr, 0, &size), RDM_OK);
   std::vector<unsigned char> state(size);
   EXPECT_EQ(rdm_pool_write_state(p.pool, -1, state.data(), size, &size), RDM_OK);
   EXPECT_EQ(rdm_pool_read_state(p.pool, -1, state.data(), size), RDM_OK) << rdm_pool_error(p.pool);
@@ -194,7 +194,7 @@ TEST(Trouble, ThingsThatAreSlowedAreFlagged) {
     task.build = [](rdm_scene* scene) { return add_box(scene, "a", 1, 2); };
     task.reset = [&](rdm_world* world, rdm_random*) {
       rdm_motion m{};
-      m.p[2] = 2, m.q[0] = 1, m.w[2] = spin;
+      m.pose.p[2] = 2, m.pose.q[0] = 1, m.w[2] = spin;
       return rdm_world_set_body(world, 0, &m);
     };
     Pool within("spun", engine);

@@ -400,7 +400,8 @@ std::vector<Case> all_cases() {
                  },
                  [](const rdm_host*) {
                    const float point[3] = {0.2f, 0.2f, 0.2f}, low[3] = {-1, -1, -1}, high[3] = {2, 2, 2};
-                   const float pose[7] = {0, 0, 0, 0, 0, 0, 1}, half[3] = {1, 1, 1}, down[3] = {0, 0, -1};
+                   const float half[3] = {1, 1, 1}, down[3] = {0, 0, -1};
+                   const rdm_pose pose{};
                    float number = 0, hit[3];
                    rdm_voxel voxel[4];
                    size_t n = 0;
@@ -409,10 +410,10 @@ std::vector<Case> all_cases() {
                    int8_t grid[64];
                    rdm_result r = rdm_map_query(g.map, point, 1, &number);
                    if (r == RDM_OK) r = rdm_map_box(g.map, low, high, voxel, 4, &n);
-                   if (r == RDM_OK) r = rdm_map_meets(g.map, pose, half, &yes);
+                   if (r == RDM_OK) r = rdm_map_meets(g.map, &pose, half, &yes);
                    if (r == RDM_OK) r = rdm_map_raycast(g.map, high, down, 3, 1, hit, &yes);
                    if (r == RDM_OK) r = rdm_map_distance(g.map, point, 1, 1, &number);
-                   if (r == RDM_OK) r = rdm_map_grid(g.map, pose, cells, 0.1f, grid);
+                   if (r == RDM_OK) r = rdm_map_grid(g.map, &pose, cells, 0.1f, grid);
                    return r;
                  },
                  clear});

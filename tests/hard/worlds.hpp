@@ -154,7 +154,7 @@ struct PoolOf {
   }
   Bytes state() const {
     size_t n = 0;
-    HARD_REQUIRE(rdm_pool_state_size(handle, -1, &n) == RDM_OK, "%s", rdm_last_error());
+    HARD_REQUIRE(rdm_pool_write_state(handle, -1, nullptr, 0, &n) == RDM_OK, "%s", rdm_last_error());
     Bytes out(n);
     HARD_REQUIRE(rdm_pool_write_state(handle, -1, out.data(), n, &n) == RDM_OK, "%s", rdm_last_error());
     return out;

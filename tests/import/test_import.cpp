@@ -47,8 +47,8 @@ struct Robot {  // in the process's list for a while
   ~Robot() {
     if (index >= 0) rdm_robot_destroy(index);
   }
-  std::vector<double> poses(const std::vector<double>& q) const {
-    std::vector<double> out(7 * q.size());
+  std::vector<rdm_pose> poses(const std::vector<double>& q) const {
+    std::vector<rdm_pose> out(q.size());
     EXPECT_EQ(rdm_robot_kinematics(index, q.data(), out.data(), nullptr, nullptr, nullptr), RDM_OK)
         << rdm_last_error();
     return out;
@@ -115,8 +115,8 @@ TEST(Import, RolesAreGuessedAndListed) {
   const Import two = from_file("hand.urdf", &o);
   EXPECT_STREQ(two.def.name, "two");
   EXPECT_EQ(two.def.num_fingers, 2);
-  EXPECT_DOUBLE_EQ(two.def.mount_p[2], -0.01);
-  EXPECT_NEAR(two.def.mount_q[2], std::sqrt(0.5), 1e-12);
+  EXPECT_DOUBLE_EQ(two.def.mount.p[2], -0.01);
+  EXPECT_NEAR(two.def.mount.q[2], std::sqrt(0.5), 1e-12);
 }
 
 // An option that would change the robot is taken or refused, never passed over.
@@ -157,7 +157,10 @@ TEST(Import, MjcfIsTheSameHand) {
       q.push_back(std::uniform_real_distribution<>(0, urdf.def.links[i].upper)(random));
     }
     const auto x = a.poses(q), y = b.poses(q);
-    for (size_t i = 0; i < x.size(); ++i) EXPECT_NEAR(x[i], y[i], 1e-12) << i;
+    for (size_t i = 0; i < x.size(); ++i) {
+      for (int k = 0; k < 3; ++k) EXPECT_NEAR(x[i].p[k], y[i].p[k], 1e-12) << i;
+      for (int k = 0; k < 4; ++k) EXPECT_NEAR(x[i].q[k], y[i].q[k], 1e-12) << i;
+    }
   }
   for (int m = 0; m < 6; ++m) EXPECT_NEAR(urdf.def.root_moment[m], mjcf.def.root_moment[m], 1e-15);
 }
@@ -225,12 +228,12 @@ TEST(Import, GrippersHaveRailsOffsetsAndMeshes) {
   ASSERT_EQ(d.num_couplings, 1);
   EXPECT_DOUBLE_EQ(d.couplings[0].ratio, 1);
   EXPECT_NEAR(d.links[2].lower, 0, 1e-15);
-  EXPECT_NEAR(d.links[2].p[0], -0.02, 1e-15);
+  EXPECT_NEAR(d.links[2].pose.p[0], -0.02, 1e-15);
   const rdm_robot_shape &pad = d.shapes[1], &rod = d.shapes[2];
   EXPECT_EQ(pad.kind, RDM_SHAPE_BOX);
   EXPECT_NEAR(pad.size[0], 0.005, 1e-9);
   EXPECT_NEAR(pad.size[2], 0.03, 1e-9);
-  EXPECT_NEAR(pad.p[2], 0.03, 1e-9);
+  EXPECT_NEAR(pad.pose.p[2], 0.03, 1e-9);
   EXPECT_EQ(rod.kind, RDM_SHAPE_CAPSULE);
   EXPECT_NEAR(rod.size[0], 0.01, 1e-4);
   EXPECT_NEAR(rod.size[1], 0.03, 1e-3);
@@ -244,14 +247,14 @@ TEST(Import, ArmsHaveFlangesReferencesAndMassesOfShapes) {
   // Two joints on one body: the first carries nothing of its own.
   EXPECT_EQ(d.links[0].mass, 0);
   EXPECT_DOUBLE_EQ(d.links[1].mass, 1.5);
-  EXPECT_DOUBLE_EQ(d.links[1].p[2], 0.1);
+  EXPECT_DOUBLE_EQ(d.links[1].pose.p[2], 0.1);
   EXPECT_NEAR(d.links[1].moment[2], 1.5 * 0.04 * 0.04 / 2, 1e-12);
-  EXPECT_NEAR(d.links[1].q[1], std::sin(-0.25), 1e-12);  // ref: the file's pose is its 0.5
+  EXPECT_NEAR(d.links[1].pose.q[1], std::sin(-0.25), 1e-12);  // ref: the file's pose is its 0.5
   EXPECT_NEAR(d.links[2].mass, 0.5 + 500 * 0.04 * 0.04 * 0.2, 1e-12);
-  EXPECT_NEAR(d.links[2].q[2], std::sqrt(0.5), 1e-12);  // xyaxes
+  EXPECT_NEAR(d.links[2].pose.q[2], std::sqrt(0.5), 1e-12);  // xyaxes
   EXPECT_EQ(d.flange_link, 2);
-  EXPECT_DOUBLE_EQ(d.flange_p[2], 0.3);
-  EXPECT_DOUBLE_EQ(d.flange_q[0], 1);
+  EXPECT_DOUBLE_EQ(d.flange.p[2], 0.3);
+  EXPECT_DOUBLE_EQ(d.flange.q[0], 1);
   EXPECT_DOUBLE_EQ(d.links[0].effort, 50);
   EXPECT_DOUBLE_EQ(d.links[0].armature, 0.1);
   EXPECT_DOUBLE_EQ(d.links[1].kp, 200);
@@ -391,7 +394,7 @@ TEST(RobotText, CommentsAndOrderAreFree) {
       "'l'\naxis = [0, 0, 1]\n"
       "range = [-1, 1]\nmass = 1\nmoment = [1e-2, 1e-2, 1e-2, 0, 0, 0]\n# the end\n");
   EXPECT_EQ(i.def.num_links, 1);
-  EXPECT_EQ(i.def.links[0].q[3], 1);
+  EXPECT_EQ(i.def.links[0].pose.q[3], 1);
   EXPECT_EQ(i.def.links[0].mass, 1);
 }
 

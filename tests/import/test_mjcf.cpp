@@ -53,9 +53,9 @@ TEST(Mjcf, FramesTurnAndShiftWhatStandsInThem) {
       kRod + "<body name='tip' pos='.3 0 0'><geom size='.02' mass='.2'/></body></frame></frame></body>"));
   const rdm_robot_link& l = i.def.links[0];
   EXPECT_NEAR(l.axis[0], 1, 1e-12);  // z of the frame is x of the body
-  EXPECT_NEAR(l.p[0], 0.5, 1e-12);
-  EXPECT_NEAR(l.p[1], 0.1, 1e-12);
-  EXPECT_NEAR(l.p[2], 0.1 + 0.2, 1e-12);
+  EXPECT_NEAR(l.pose.p[0], 0.5, 1e-12);
+  EXPECT_NEAR(l.pose.p[1], 0.1, 1e-12);
+  EXPECT_NEAR(l.pose.p[2], 0.1 + 0.2, 1e-12);
   // The rod and the ball 0.3 m down the frame's x, which is the body's -z.
   EXPECT_NEAR(l.mass, 0.3, 1e-12);
   EXPECT_NEAR(l.com[0], -0.5, 1e-12);
@@ -67,14 +67,14 @@ TEST(Mjcf, FramesOfTheWorldHoldTheRoot) {
       "<mujoco><worldbody><frame pos='1 0 0' euler='0 0 90'><body name='cart' pos='0 1 0'>"
       "<joint name='j' type='slide' axis='1 0 0' range='-1 1'/><geom size='.1'/></body></frame>"
       "</worldbody></mujoco>");
-  EXPECT_NEAR(i.def.links[0].p[0], 0, 1e-12);
-  EXPECT_NEAR(i.def.links[0].q[2], std::sqrt(0.5), 1e-12);
+  EXPECT_NEAR(i.def.links[0].pose.p[0], 0, 1e-12);
+  EXPECT_NEAR(i.def.links[0].pose.q[2], std::sqrt(0.5), 1e-12);
 }
 
 TEST(Mjcf, HalfATurnOfZaxisIsAboutX) {
   const Import i =
       from_text(file("<body name='arm' zaxis='0 0 -2'><joint name='j' range='-90 90'/>" + kRod + "</body>"));
-  EXPECT_NEAR(std::abs(i.def.links[0].q[0]), 1, 1e-12);
+  EXPECT_NEAR(std::abs(i.def.links[0].pose.q[0]), 1, 1e-12);
 }
 
 TEST(Mjcf, AnElementsOwnTurnGoesBeforeThatOfItsClass) {
@@ -307,7 +307,7 @@ TEST(Mjcf, PrimitivesAreFittedToMeshes) {
                                     compiler + "<asset><mesh name='m' " + kCorners + kFaces + "/></asset>"));
     rdm_robot_shape s = i.def.shapes[1];
     s.name = nullptr;
-    EXPECT_NEAR(s.p[0], 4, 1e-9);
+    EXPECT_NEAR(s.pose.p[0], 4, 1e-9);
     return std::make_pair(s, i.def.links[0].mass);
   };
   const auto [box, box_mass] = shape("type='box'");

@@ -55,8 +55,8 @@ TEST(ObjectText, EveryObjectReadsBackToTheBit) {
       const rdm_shape_def &s = a.def.shapes[k], &t = b.def.shapes[k];
       EXPECT_EQ(s.kind, t.kind);
       EXPECT_EQ(std::memcmp(s.size, t.size, sizeof s.size), 0) << a.def.name << k;
-      EXPECT_EQ(std::memcmp(s.p, t.p, sizeof s.p), 0) << a.def.name << k;
-      EXPECT_EQ(std::memcmp(s.q, t.q, sizeof s.q), 0) << a.def.name << k;
+      EXPECT_EQ(std::memcmp(s.pose.p, t.pose.p, sizeof s.pose.p), 0) << a.def.name << k;
+      EXPECT_EQ(std::memcmp(s.pose.q, t.pose.q, sizeof s.pose.q), 0) << a.def.name << k;
       EXPECT_EQ(std::memcmp(s.color, t.color, 4), 0);
       ASSERT_EQ(s.num_points, t.num_points);
       if (s.num_points > 0) {
@@ -73,7 +73,7 @@ TEST(ObjectText, WhatIsLeftOutIsTheDefault) {
   EXPECT_EQ(i.def.alias, nullptr);
   EXPECT_EQ(i.def.friction, 0.5);
   EXPECT_EQ(i.def.moment[0], 0);
-  EXPECT_EQ(i.def.shapes[0].q[3], 1);
+  EXPECT_EQ(i.def.shapes[0].pose.q[3], 1);
   EXPECT_EQ(i.def.shapes[0].color[0], 200);
   int32_t object = -1;
   ASSERT_EQ(rdm_object_create(&object, &i.def), RDM_OK) << rdm_last_error();

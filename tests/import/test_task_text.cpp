@@ -573,7 +573,7 @@ TEST(TaskText, FilesThatShipKeepWhatATaskPromises) {
     hashes[threads] = pool.hash();
     if (threads == 2) {  // saved, gone on, and put back
       size_t size = 0;
-      ASSERT_EQ(rdm_pool_state_size(pool.pool, -1, &size), RDM_OK);
+      ASSERT_EQ(rdm_pool_write_state(pool.pool, -1, nullptr, 0, &size), RDM_OK);
       std::vector<char> bytes(size);
       ASSERT_EQ(rdm_pool_write_state(pool.pool, -1, bytes.data(), size, &size), RDM_OK);
       for (int i = 0; i < 10; ++i) pool.step(0.5f);
@@ -608,16 +608,17 @@ TEST(TaskText, HandsOnArmsLeftOnesAndOptions) {
   // A mirror image keeps what lies between two tips, and that between a tip and a joint's frame.
   int32_t hand = -1;
   ASSERT_EQ(rdm_robot_find("shadow_hand", &hand), RDM_OK);
-  double home[RDM_MAX_LINKS], poses[7 * RDM_MAX_LINKS], tips[3 * 8];
+  double home[RDM_MAX_LINKS], tips[3 * 8];
+  rdm_pose links[RDM_MAX_LINKS];
   ASSERT_EQ(rdm_robot_get_postures(hand, nullptr, home, nullptr, nullptr), RDM_OK);
-  ASSERT_EQ(rdm_robot_kinematics(hand, home, poses, nullptr, tips, nullptr), RDM_OK);
+  ASSERT_EQ(rdm_robot_kinematics(hand, home, links, nullptr, tips, nullptr), RDM_OK);
   const auto between = [](const double* a, const double* b) {
     return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
   };
   Pool pool("text_arms");
   EXPECT_EQ(pool.spec.action_dim, 6 + 16 + 20 + 6);
   EXPECT_NEAR(pool.number("to_thumb"), between(tips, tips + 12), 1e-5);
-  EXPECT_NEAR(pool.number("to_wrist"), between(tips, poses), 1e-5);
+  EXPECT_NEAR(pool.number("to_wrist"), between(tips, links[0].p), 1e-5);
   const auto before = pool.field("palm");
   for (int i = 0; i < 60; ++i) pool.step();
   const auto after = pool.field("palm");

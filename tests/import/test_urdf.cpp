@@ -160,7 +160,7 @@ TEST(Urdf, NoNumberAndTooLargeANumberAreTwoReasons) {
   expect_refused(with_joint("<origin xyz='0 0 inf'/>" + kLimit), RDM_ERROR_RANGE, "xyz: 0 0 inf is outside");
   expect_refused(with_joint("<origin xyz='0 0 1,5.5.5'/>" + kLimit), RDM_ERROR_FORMAT, "is no number");
   expect_refused(with_joint("<origin xyz='0 0 1e999'/>" + kLimit), RDM_ERROR_RANGE, "is outside");
-  EXPECT_EQ(from_text(with_joint("<origin xyz='0 0 1e-999'/>" + kLimit)).def.links[0].p[2], 0);
+  EXPECT_EQ(from_text(with_joint("<origin xyz='0 0 1e-999'/>" + kLimit)).def.links[0].pose.p[2], 0);
 }
 
 TEST(Urdf, ABoundThatIsNoneIsNone) {
@@ -217,7 +217,7 @@ TEST(Urdf, NegativeNumbersAreSaidOrRefused) {
 
 TEST(Urdf, TurnsByQuaternionAndMirroredMomentsAreRead) {
   const Import i = from_text(with_joint("<origin xyz='0 0 1' quat_xyzw='0 0 2 0'/>" + kLimit));
-  EXPECT_NEAR(std::abs(i.def.links[0].q[2]), 1, 1e-12);
+  EXPECT_NEAR(std::abs(i.def.links[0].pose.q[2]), 1, 1e-12);
   expect_refused(with_joint("<origin rpy='0 0 0' quat_xyzw='0 0 1 0'/>" + kLimit), RDM_ERROR_FORMAT,
                  "rpy and quat_xyzw");
   const auto moments = [](const char* iyx) {

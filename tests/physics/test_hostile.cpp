@@ -16,7 +16,7 @@ class Hostile : public testing::TestWithParam<const char*> {};
 
 std::vector<unsigned char> state_of(const rdm_pool* p, int32_t env) {
   size_t n = 0;
-  EXPECT_EQ(rdm_pool_state_size(p, env, &n), RDM_OK);
+  EXPECT_EQ(rdm_pool_write_state(p, env, nullptr, 0, &n), RDM_OK);
   std::vector<unsigned char> out(n);
   EXPECT_EQ(rdm_pool_write_state(p, env, out.data(), n, &n), RDM_OK);
   return out;

@@ -36,7 +36,7 @@ class CalledTask {
       sphere.kind = RDM_SHAPE_SPHERE, sphere.size[0] = 0.05;
       rdm_body_def ball{};
       ball.struct_size = sizeof ball, ball.name = "ball", ball.shapes = &sphere, ball.num_shapes = 1;
-      ball.mass = 0.1, ball.p[2] = 1;
+      ball.mass = 0.1, ball.pose.p[2] = 1;
       if (const rdm_result r = rdm_scene_add_body(scene, &ball, nullptr)) return r;
       return self(u).build ? self(u).build(scene) : rdm_result{RDM_OK};
     };

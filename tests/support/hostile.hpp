@@ -174,7 +174,7 @@ class Trial {
       const float nothing[3] = {};
       if (rdm_pool_push(pool_, 0, i, nothing) == RDM_OK) pushed_.push_back(i);
     }
-    poses_.resize(7 * static_cast<size_t>(spec_.num_shapes));
+    poses_.resize(static_cast<size_t>(spec_.num_shapes));
   }
 
   double object_mass() const {
@@ -251,10 +251,12 @@ class Trial {
       far = far || std::fabs(p[k]) > 4.999;
     }
     if (!far) return true;
-    keep(rdm_pool_poses(pool_, env, poses_.data()));
-    for (int k = 0; k < 3; ++k)
-      p[k] = static_cast<double>(poses_[7 * static_cast<size_t>(object_shape_) + static_cast<size_t>(k)]);
-    return finite(poses_.data(), 7 * spec_.num_shapes);
+    keep(rdm_pool_get_poses(pool_, env, poses_.data()));
+    std::copy_n(poses_[static_cast<size_t>(object_shape_)].p, 3, p);
+    const auto whole = [](double v) { return std::isfinite(v); };
+    return std::all_of(poses_.begin(), poses_.end(), [&](const rdm_pose& X) {
+      return std::all_of(X.p, X.p + 3, whole) && std::all_of(X.q, X.q + 4, whole);
+    });
   }
 
   void remember(int32_t env) {
@@ -333,12 +335,12 @@ class Trial {
   }
 
   bool look_at_contacts(int32_t env) {
-    constexpr int32_t kMost = 64;
+    constexpr size_t kMost = 64;
     rdm_contact list[kMost];
-    int32_t count = 0;
+    size_t count = 0;
     bool good = true;
-    keep(rdm_pool_contacts(pool_, env, list, kMost, &count));
-    for (int32_t i = 0; i < std::min(count, kMost); ++i) {
+    keep(rdm_pool_get_contacts(pool_, env, list, kMost, &count));
+    for (size_t i = 0; i < std::min(count, kMost); ++i) {
       const rdm_contact& c = list[i];
       const bool fine =
           finite(c.position, 3) && finite(c.normal, 3) && finite(c.force, 3) && finite(&c.depth, 1);
@@ -361,7 +363,8 @@ class Trial {
   int32_t object_ = 0, rotation_ = 0, object_shape_ = 0;
   std::vector<int32_t> joints_, tips_, pushed_;
   std::vector<double> halves_, place_;
-  std::vector<float> angles_, signs_, poses_;
+  std::vector<float> angles_, signs_;
+  std::vector<rdm_pose> poses_;
   std::vector<int64_t> run_, pushes_;  // pushes: of this episode
   std::vector<Event> events_;
   Figures figures_;

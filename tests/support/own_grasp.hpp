@@ -52,7 +52,7 @@ inline rdm_result grasp_build(void*, rdm_scene* scene, void* instance) {
   rdm_scene_robot hand;
   OWN_TRY(rdm_scene_robot_init(&hand, sizeof hand));
   hand.name = "right", hand.material = "hand";
-  hand.p[2] = 0.1, hand.q[1] = 1, hand.q[3] = 0;
+  hand.pose.p[2] = 0.1, hand.pose.q[1] = 1, hand.pose.q[3] = 0;
   OWN_TRY(rdm_robot_find("shadow_hand", &hand.robot));
   OWN_TRY(rdm_scene_add_robot(scene, &hand, &ids->hand));
   rdm_shape_def box{};
@@ -60,7 +60,7 @@ inline rdm_result grasp_build(void*, rdm_scene* scene, void* instance) {
   rdm_body_def cube{};
   cube.struct_size = sizeof cube, cube.name = "object", cube.shapes = &box, cube.num_shapes = 1;
   cube.mass = 0.071, cube.angular_damping = 0.1;
-  cube.p[1] = -0.4, cube.p[2] = 0.026;
+  cube.pose.p[1] = -0.4, cube.pose.p[2] = 0.026;
   const double y = 0.025 * 0.025, moment = cube.mass / 3 * (y + y);
   for (int k = 0; k < 3; ++k) cube.moment[k] = moment * cube.mass / cube.mass;
   OWN_TRY(rdm_scene_add_body(scene, &cube, &ids->object));
@@ -125,13 +125,13 @@ inline rdm_result grasp_reset(void*, const void* instance, rdm_world* world, voi
   rdm_motion m{};
   double depth = 1;
   for (int draw = 0; draw < 100 && depth > 0; ++draw) {
-    for (int k = 0; k < 3; ++k) m.p[k] = start[k] + 0.001 * rdm_random_uniform(random, -1, 1);
-    OWN_TRY(rdm_rotation(z, kPi * rdm_random_uniform(random, -1, 1), m.q));
+    for (int k = 0; k < 3; ++k) m.pose.p[k] = start[k] + 0.001 * rdm_random_uniform(random, -1, 1);
+    OWN_TRY(rdm_rotation(z, kPi * rdm_random_uniform(random, -1, 1), m.pose.q));
     OWN_TRY(rdm_world_set_body(world, ids->object, &m));
     OWN_TRY(rdm_world_get_overlap(world, ids->object, &depth));
   }
   for (int raise = 0; raise < 100 && depth > 0; ++raise) {
-    m.p[2] += 0.005;
+    m.pose.p[2] += 0.005;
     OWN_TRY(rdm_world_set_body(world, ids->object, &m));
     OWN_TRY(rdm_world_get_overlap(world, ids->object, &depth));
   }
@@ -163,8 +163,8 @@ inline rdm_result grasp_judge(void*, const void* instance, rdm_world* world, voi
   joints.struct_size = sizeof joints;
   OWN_TRY(rdm_world_get_body(world, ids->object, &cube));
   OWN_TRY(rdm_world_get_joints(world, &joints));
-  out->reward = 100 * (cube.p[2] - 0);
-  out->success = cube.p[2] >= 0.1;
+  out->reward = 100 * (cube.pose.p[2] - 0);
+  out->success = cube.pose.p[2] >= 0.1;
   double effort = 0, range = 0;
   for (int32_t i = 0; i < ids->actions; ++i) {
     const int32_t j = ids->joint[i];
@@ -197,8 +197,8 @@ inline rdm_result grasp_observe(void*, const void* instance, const rdm_world* wo
   obs = put(joints.qd, ids->joints, 0.2, obs);
   obs = put(joints.torque, ids->joints, 10, obs);
   OWN_TRY(rdm_world_get_body(world, ids->object, &m));
-  obs = put(m.p, 3, 1, obs);
-  obs = put(m.q, 4, 1, obs);
+  obs = put(m.pose.p, 3, 1, obs);
+  obs = put(m.pose.q, 4, 1, obs);
   obs = put(m.v, 3, 1, obs);
   obs = put(m.w, 3, 0.2, obs);
   const double place[3] = {0, -0.4, 0.1}, goal[4] = {s->goal[1], s->goal[2], s->goal[3], s->goal[0]};
@@ -206,12 +206,12 @@ inline rdm_result grasp_observe(void*, const void* instance, const rdm_world* wo
   obs = put(goal, 4, 1, obs);
   const double back[4] = {-goal[0], -goal[1], -goal[2], goal[3]};
   double error[4];
-  multiply(m.q, back, error);
+  multiply(m.pose.q, back, error);
   obs = put(error, 4, 1, obs);
   for (int32_t i = 0; i < ids->tips; ++i) {
     OWN_TRY(rdm_world_get_link(world, ids->tip[i], &m));
-    obs = put(m.p, 3, 1, obs);
-    obs = put(m.q, 4, 1, obs);
+    obs = put(m.pose.p, 3, 1, obs);
+    obs = put(m.pose.q, 4, 1, obs);
     obs = put(m.v, 3, 1, obs);
     obs = put(m.w, 3, 1, obs);
   }

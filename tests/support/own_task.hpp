@@ -82,24 +82,24 @@ inline rdm_result ball_build(void* user, rdm_scene* scene, void* instance) {
   rdm_robot_link link{};
   link.name = "plate", link.joint = "rail";
   link.parent = RDM_LINK_ROOT, link.kind = RDM_JOINT_PRISMATIC;
-  link.q[3] = 1, link.axis[0] = 1;
+  link.pose.q[3] = 1, link.axis[0] = 1;
   link.lower = -0.3, link.upper = 0.3, link.kp = 200, link.kd = 10, link.effort = 20, link.velocity = 2;
   link.mass = 0.2;
   for (int k = 0; k < 3; ++k) link.moment[k] = 1e-3;
   rdm_robot_shape plate{};
-  plate.name = "plate", plate.kind = RDM_SHAPE_BOX, plate.q[3] = 1;
+  plate.name = "plate", plate.kind = RDM_SHAPE_BOX, plate.pose.q[3] = 1;
   plate.size[0] = 0.01, plate.size[1] = 0.1, plate.size[2] = 0.05;
   rdm_robot_def d;
   if (r == RDM_OK) r = rdm_robot_def_init(&d, sizeof d);
   d.name = "pusher", d.links = &link, d.num_links = 1, d.shapes = &plate, d.num_shapes = 1;
   rdm_scene_robot robot{};
-  robot.struct_size = sizeof robot, robot.own = &d, robot.name = "paddle", robot.p[2] = 0.06;
+  robot.struct_size = sizeof robot, robot.own = &d, robot.name = "paddle", robot.pose.p[2] = 0.06;
   if (r == RDM_OK) r = rdm_scene_add_robot(scene, &robot, &ids->paddle);
   rdm_shape_def sphere{};
   sphere.kind = RDM_SHAPE_SPHERE, sphere.size[0] = 0.05, sphere.material = "rubber";
   rdm_body_def ball{};
   ball.struct_size = sizeof ball, ball.name = "ball", ball.shapes = &sphere, ball.num_shapes = 1;
-  ball.mass = 0.1, ball.p[0] = 0.15, ball.p[2] = 0.05, ball.angular_damping = 0.5;
+  ball.mass = 0.1, ball.pose.p[0] = 0.15, ball.pose.p[2] = 0.05, ball.angular_damping = 0.5;
   if (r == RDM_OK) r = rdm_scene_add_body(scene, &ball, &ids->ball);
   rdm_shape_def ground{};
   ground.name = "ground", ground.kind = RDM_SHAPE_PLANE;
@@ -121,7 +121,7 @@ inline rdm_result ball_reset(void* user, const void* instance, rdm_world* world,
   if (u->fault == Fault::kResetHidden) s->start += 1e-3 * static_cast<double>(++u->calls % 7);
   rdm_random_split(random, &s->draws);
   rdm_motion m{};
-  m.p[0] = s->start, m.p[2] = 0.05, m.q[3] = 1;
+  m.pose.p[0] = s->start, m.pose.p[2] = 0.05, m.pose.q[3] = 1;
   const double q = -0.1;
   const rdm_result r = rdm_world_set_body(world, ids->ball, &m);
   return r != RDM_OK ? r : rdm_world_set_joints(world, ids->paddle, &q, nullptr, 1);
@@ -176,8 +176,8 @@ inline rdm_result ball_judge(void* user, const void* instance, rdm_world* world,
   out->cost[0] = pairs > 0;
   out->cost_raw[0] = force;
   out->cost[1] = out->cost_raw[1] = std::fabs(ball.v[0]);
-  out->terminated = std::fabs(ball.p[0]) > 2;
-  out->success = ball.p[0] > 0.5;
+  out->terminated = std::fabs(ball.pose.p[0]) > 2;
+  out->success = ball.pose.p[0] > 0.5;
   switch (u->fault) {
     case Fault::kJudgeNan:
       out->reward = s->steps == 3 ? NAN : 0;
@@ -211,7 +211,7 @@ inline rdm_result ball_observe(void* user, const void* instance, const rdm_world
   rdm_result r = rdm_world_get_body(world, ids->ball, &ball);
   if (r == RDM_OK) r = rdm_world_get_joints(world, &joints);
   if (r != RDM_OK) return r;
-  for (int k = 0; k < 3; ++k) obs[k] = static_cast<float>(ball.p[k]);
+  for (int k = 0; k < 3; ++k) obs[k] = static_cast<float>(ball.pose.p[k]);
   for (int k = 0; k < 3; ++k) obs[3 + k] = static_cast<float>(ball.v[k]);
   obs[6] = static_cast<float>(joints.q[ids->rail]);
   obs[7] = s->action[0];
@@ -234,7 +234,7 @@ inline rdm_result ball_observe(void* user, const void* instance, const rdm_world
       break;
     case Fault::kObserveSets: {
       rdm_motion m{};
-      m.q[3] = 1;
+      m.pose.q[3] = 1;
       return rdm_world_set_body(const_cast<rdm_world*>(world), ids->ball, &m);
     }
     default:

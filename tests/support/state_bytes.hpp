@@ -12,7 +12,7 @@ class StateBytes {
   // Of world `env` of a pool.
   StateBytes(const rdm_pool* p, int32_t env) {
     size_t size = 0;
-    rdm_pool_state_size(p, env, &size);
+    rdm_pool_write_state(p, env, nullptr, 0, &size);
     bytes_.resize(size);
     rdm_pool_write_state(p, env, bytes_.data(), size, &size);
     rdm_spec spec{};

@@ -14,7 +14,7 @@ cat > faulty.c << 'C'
 #include <redman/redman.h>
 static rdm_result build(void* user, rdm_scene* scene, void* instance) {
   const rdm_shape_def sphere = {.kind = RDM_SHAPE_SPHERE, .size = {.05}};
-  const rdm_body_def ball = {sizeof ball, 1, "ball", &sphere, .p = {0, 0, 1}, .mass = 0.1};
+  const rdm_body_def ball = {sizeof ball, 1, "ball", &sphere, .pose.p = {0, 0, 1}, .mass = 0.1};
   (void)user, (void)instance;
   return rdm_scene_add_body(scene, &ball, NULL);
 }

@@ -19,13 +19,13 @@ struct Sums {
 
 // Of links whose frames are at a joint and whose centres of mass are at `com`.
 void add_link(const rdm_motion& m, double mass, const V3& com, const V3& moment, Sums* out) {
-  const V4 q = {m.q[0], m.q[1], m.q[2], m.q[3]};
+  const V4 q = {m.pose.q[0], m.pose.q[1], m.pose.q[2], m.pose.q[3]};
   const V3 arm = rotate(q, com), w = vec(m.w), v = vec(m.v) + cross(w, arm), inside = unrotate(q, w);
   const V3 spin = {moment[0] * inside[0], moment[1] * inside[1], moment[2] * inside[2]};
   out->energy += (mass * dot(v, v) + dot(inside, spin)) / 2;
   out->momentum = out->momentum + mass * v;
-  out->about = out->about + mass * cross(vec(m.p) + arm, v) + rotate(q, spin);
-  out->center = out->center + mass * (vec(m.p) + arm);
+  out->about = out->about + mass * cross(vec(m.pose.p) + arm, v) + rotate(q, spin);
+  out->center = out->center + mass * (vec(m.pose.p) + arm);
 }
 
 Robot free_chain(int joints, double axial) {

@@ -166,9 +166,10 @@ void limits(Rows& rows) {
                  V3 sum{};
                  const rdm_motion* at[2] = {lab.bases.data(), lab.links.data()};
                  for (int i = 0; i < 2; ++i) {
-                   const V4 q = {at[i]->q[0], at[i]->q[1], at[i]->q[2], at[i]->q[3]};
+                   const V4 q = {at[i]->pose.q[0], at[i]->pose.q[1], at[i]->pose.q[2], at[i]->pose.q[3]};
                    const V3 arm = rotate(q, {0, 0, i == 0 ? 0.1 : -0.1});
-                   sum = sum + 0.1 * cross(vec(at[i]->p) + arm, vec(at[i]->v) + cross(vec(at[i]->w), arm)) +
+                   sum = sum +
+                         0.1 * cross(vec(at[i]->pose.p) + arm, vec(at[i]->v) + cross(vec(at[i]->w), arm)) +
                          1e-4 * vec(at[i]->w);
                  }
                  return sum;

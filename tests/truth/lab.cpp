@@ -98,7 +98,7 @@ void copy(const std::array<double, N>& from, double* to) {
 
 rdm_motion motion(const V3& p, const V4& q, const V3& v, const V3& w) {
   rdm_motion m;
-  copy(p, m.p), copy(q, m.q), copy(v, m.v), copy(w, m.w);
+  copy(p, m.pose.p), copy(q, m.pose.q), copy(v, m.v), copy(w, m.w);
   return m;
 }
 
@@ -106,7 +106,7 @@ rdm_shape_def shape_def(const Shape& s) {
   rdm_shape_def d{};
   d.kind = s.kind, d.material = "m";
   if (!s.name.empty()) d.name = s.name.c_str();
-  copy(s.size, d.size), copy(s.p, d.p), copy(s.q, d.q);
+  copy(s.size, d.size), copy(s.p, d.pose.p), copy(s.q, d.pose.q);
   d.num_points = static_cast<int32_t>(s.points.size());
   if (d.num_points > 0) d.points = s.points.front().data();
   return d;
@@ -196,7 +196,7 @@ rdm_result Lab::build(rdm_scene* out) {
     check(rdm_scene_robot_init(&s, sizeof s));
     s.name = name.c_str(), s.material = "m";
     s.free_base = r.free_base, s.gravity = r.gravity, s.base_damping = r.base_damping;
-    copy(r.p, s.p), copy(r.q, s.q);
+    copy(r.p, s.pose.p), copy(r.q, s.pose.q);
     rdm_robot_def d;
     check(rdm_robot_def_init(&d, sizeof d));
     std::vector<rdm_robot_link> links;
@@ -215,15 +215,15 @@ rdm_result Lab::build(rdm_scene* out) {
         x.parent = l.parent, x.kind = l.kind, x.lower = l.lower, x.upper = l.upper;
         x.kp = l.kp, x.kd = l.kd, x.effort = l.effort, x.armature = l.armature, x.friction = l.friction;
         x.mass = l.mass;
-        x.q[3] = 1;
-        copy(l.p, x.p), copy(l.axis, x.axis), copy(l.com, x.com), copy(l.moment, x.moment);
+        x.pose.q[3] = 1;
+        copy(l.p, x.pose.p), copy(l.axis, x.axis), copy(l.com, x.com), copy(l.moment, x.moment);
         links.push_back(x);
       }
       for (const auto& [link, shape] : r.shapes) {
         rdm_robot_shape x{};
         x.name = names.emplace_back(text("s%zu", shapes.size())).c_str();
         x.link = link, x.kind = shape.kind;
-        copy(shape.size, x.size), copy(shape.p, x.p), copy(shape.q, x.q);
+        copy(shape.size, x.size), copy(shape.p, x.pose.p), copy(shape.q, x.pose.q);
         shapes.push_back(x);
       }
       for (const Coupling& c : r.couplings) couplings.push_back({c.link, c.other, c.ratio, 0});
@@ -246,7 +246,7 @@ rdm_result Lab::build(rdm_scene* out) {
     rdm_body_def d{};
     d.struct_size = sizeof d, d.name = name.c_str(), d.mass = b.mass;
     d.shapes = shapes.data(), d.num_shapes = static_cast<int32_t>(shapes.size());
-    copy(b.p, d.p), copy(b.q, d.q), copy(b.moment, d.moment);
+    copy(b.p, d.pose.p), copy(b.q, d.pose.q), copy(b.moment, d.moment);
     check(rdm_scene_add_body(out, &d, nullptr));
   }
   count = 0;
@@ -319,7 +319,7 @@ void Lab::step(int n) {
 }
 
 V3 Lab::p(size_t body) const {
-  return vec(bodies[body].p);
+  return vec(bodies[body].pose.p);
 }
 V3 Lab::v(size_t body) const {
   return vec(bodies[body].v);
@@ -328,7 +328,7 @@ V3 Lab::w(size_t body) const {
   return vec(bodies[body].w);
 }
 V4 Lab::turned(size_t body) const {
-  const double* q4 = bodies[body].q;
+  const double* q4 = bodies[body].pose.q;
   return {q4[0], q4[1], q4[2], q4[3]};
 }
 

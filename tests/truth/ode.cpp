@@ -34,10 +34,10 @@ void free_limit(Rows& rows) {
       V3 linear{}, angular{};
       const rdm_motion* at[2] = {lab.bases.data(), lab.links.data()};
       for (int i = 0; i < 2; ++i) {
-        const V4 q = {at[i]->q[0], at[i]->q[1], at[i]->q[2], at[i]->q[3]};
+        const V4 q = {at[i]->pose.q[0], at[i]->pose.q[1], at[i]->pose.q[2], at[i]->pose.q[3]};
         const V3 arm = rotate(q, {0, 0, i == 0 ? 0.1 : -0.1}), v = vec(at[i]->v) + cross(vec(at[i]->w), arm);
         linear = linear + 0.1 * v;
-        angular = angular + 0.1 * cross(vec(at[i]->p) + arm, v) + 1e-4 * vec(at[i]->w);
+        angular = angular + 0.1 * cross(vec(at[i]->pose.p) + arm, v) + 1e-4 * vec(at[i]->w);
       }
       return std::array<V3, 2>{linear, angular};
     };

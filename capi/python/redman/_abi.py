@@ -388,6 +388,26 @@ class rdm_option_spec(Structure):
     ]
 
 
+class Pose(Record):
+    """The values of rdm_pose."""
+
+    p: tuple[float, ...]  # its origin, m
+    q: tuple[float, ...]  # its rotation (x, y, z, w), unit; given, all 0: none
+
+
+class rdm_pose(Structure):
+    """p: its origin, m
+    q: its rotation (x, y, z, w), unit; given, all 0: none
+    """
+
+    p: Any
+    q: Any
+    _fields_ = [
+        ("p", c_double * 3),
+        ("q", c_double * 4),
+    ]
+
+
 class Field(Record):
     """The values of rdm_field."""
 
@@ -1161,7 +1181,7 @@ class rdm_pool_stats(Structure):
 class RayHit(Record):
     """The values of rdm_ray_hit."""
 
-    shape: int  # for rdm_pool_shape; -1: nothing, all else is NaN
+    shape: int  # for rdm_pool_shape_at; -1: nothing, all else is NaN
     distance: float  # m, from the origin
     point: tuple[float, ...]  # m, where the ray enters it
     normal: tuple[float, ...]  # unit, out of the shape there
@@ -1169,7 +1189,7 @@ class RayHit(Record):
 
 class rdm_ray_hit(Structure):
     """struct_size: in: bytes
-    shape: for rdm_pool_shape; -1: nothing, all else is NaN
+    shape: for rdm_pool_shape_at; -1: nothing, all else is NaN
     distance: m, from the origin
     point: m, where the ray enters it
     normal: unit, out of the shape there
@@ -2313,29 +2333,6 @@ class rdm_ranks(Structure):
     ]
 
 
-class RobotLink(Record):
-    """frozen layout: a link and the joint that moves it; m, rad, kg, N, s"""
-
-    name: str  # of the link, unique
-    joint: str  # of the joint, unique
-    parent: int  # an earlier row, RDM_LINK_ROOT
-    kind: int  # RDM_JOINT_REVOLUTE, RDM_JOINT_PRISMATIC
-    p: tuple[float, ...]  # position in the parent's frame with the joint at 0
-    q: tuple[float, ...]  # rotation, unit
-    axis: tuple[float, ...]  # in the link's own frame, unit
-    lower: float  # range, below upper
-    upper: float  # range
-    velocity: float  # how fast the drive's target may move; 0: at once
-    kp: float  # drive: effort kp (target - q) - kd rate
-    kd: float  # drive
-    effort: float  # bound of the drive's effort, N m (N)
-    armature: float  # inertia added about the axis, kg m2; revolute joints alone
-    friction: float  # dry friction, N m (N)
-    mass: float  # 0 with moments of 0: none
-    com: tuple[float, ...]  # centre of mass in the link's frame
-    moment: tuple[float, ...]  # xx yy zz xy xz yz about com, axes of the link
-
-
 class rdm_robot_link(Structure):
     """frozen layout: a link and the joint that moves it; m, rad, kg, N, s
 
@@ -2343,8 +2340,7 @@ class rdm_robot_link(Structure):
     joint: of the joint, unique
     parent: an earlier row, RDM_LINK_ROOT
     kind: RDM_JOINT_REVOLUTE, RDM_JOINT_PRISMATIC
-    p: position in the parent's frame with the joint at 0
-    q: rotation, unit
+    pose: in the parent's frame with the joint at 0
     axis: in the link's own frame, unit
     lower: range, below upper
     upper: range
@@ -2363,8 +2359,7 @@ class rdm_robot_link(Structure):
     joint: bytes | None
     parent: int
     kind: int
-    p: Any
-    q: Any
+    pose: rdm_pose
     axis: Any
     lower: float
     upper: float
@@ -2382,8 +2377,7 @@ class rdm_robot_link(Structure):
         ("joint", c_char_p),
         ("parent", c_int32),
         ("kind", c_int32),
-        ("p", c_double * 3),
-        ("q", c_double * 4),
+        ("pose", rdm_pose),
         ("axis", c_double * 3),
         ("lower", c_double),
         ("upper", c_double),
@@ -2399,18 +2393,6 @@ class rdm_robot_link(Structure):
     ]
 
 
-class RobotShape(Record):
-    """frozen layout: a link and the joint that moves it; m, rad, kg, N, s"""
-
-    name: str  # unique
-    link: int  # row, RDM_LINK_ROOT
-    kind: int  # RDM_SHAPE_SPHERE, RDM_SHAPE_CAPSULE, RDM_SHAPE_BOX, RDM_SHAPE_CYLINDER, RDM_SHAPE_ELLIPSOID
-    size: tuple[float, ...]  # as rdm_shape_info, m
-    p: tuple[float, ...]  # position in the link's frame, m
-    q: tuple[float, ...]  # rotation, unit
-    color: tuple[int, ...]  # red, green, blue, 255
-
-
 class rdm_robot_shape(Structure):
     """frozen layout: a link and the joint that moves it; m, rad, kg, N, s
 
@@ -2418,8 +2400,7 @@ class rdm_robot_shape(Structure):
     link: row, RDM_LINK_ROOT
     kind: RDM_SHAPE_SPHERE, RDM_SHAPE_CAPSULE, RDM_SHAPE_BOX, RDM_SHAPE_CYLINDER, RDM_SHAPE_ELLIPSOID
     size: as rdm_shape_info, m
-    p: position in the link's frame, m
-    q: rotation, unit
+    pose: in the link's frame
     color: red, green, blue, 255
     reserved: 0
     """
@@ -2428,8 +2409,7 @@ class rdm_robot_shape(Structure):
     link: int
     kind: int
     size: Any
-    p: Any
-    q: Any
+    pose: rdm_pose
     color: Any
     reserved: Any
     _fields_ = [
@@ -2437,8 +2417,7 @@ class rdm_robot_shape(Structure):
         ("link", c_int32),
         ("kind", c_int32),
         ("size", c_double * 3),
-        ("p", c_double * 3),
-        ("q", c_double * 4),
+        ("pose", rdm_pose),
         ("color", c_uint8 * 4),
         ("reserved", c_uint8 * 4),
     ]
@@ -2608,10 +2587,8 @@ class rdm_robot_def(Structure):
     root_mass: of the root link, kg
     root_com: in the root frame, m
     root_moment: as rdm_robot_link.moment
-    mount_p: of hands: the frame, z to the fingers, that comes onto an arm's flange; in the root frame
-    mount_q: rotation
-    flange_p: of arms: the frame, z out of the arm, that carries a hand; in flange_link's frame
-    flange_q: rotation
+    mount: of hands: the frame, z to the fingers, that comes onto an arm's flange; in the root frame
+    flange: of arms: the frame, z out of the arm, that carries a hand; in flange_link's frame
     flange_link: row, RDM_LINK_NONE
     palm_link: row, RDM_LINK_ROOT, RDM_LINK_NONE
     palm_p: centre of the palm's surface, in palm_link's frame, m
@@ -2646,10 +2623,8 @@ class rdm_robot_def(Structure):
     root_mass: float
     root_com: Any
     root_moment: Any
-    mount_p: Any
-    mount_q: Any
-    flange_p: Any
-    flange_q: Any
+    mount: rdm_pose
+    flange: rdm_pose
     flange_link: int
     palm_link: int
     palm_p: Any
@@ -2683,10 +2658,8 @@ class rdm_robot_def(Structure):
         ("root_mass", c_double),
         ("root_com", c_double * 3),
         ("root_moment", c_double * 6),
-        ("mount_p", c_double * 3),
-        ("mount_q", c_double * 4),
-        ("flange_p", c_double * 3),
-        ("flange_q", c_double * 4),
+        ("mount", rdm_pose),
+        ("flange", rdm_pose),
         ("flange_link", c_int32),
         ("palm_link", c_int32),
         ("palm_p", c_double * 3),
@@ -2705,8 +2678,7 @@ class rdm_shape_def(Structure):
     num_points: count
     kind: RDM_SHAPE_SPHERE ... RDM_SHAPE_HULL; an RDM_SHAPE_PLANE stands still
     size: as rdm_shape_info, m; of a hull unused
-    p: position in the frame of the body, or in the world, m
-    q: rotation; all 0: none
+    pose: in the frame of the body, or in the world
     color: red, green, blue, 255; all 0: grey
     seen_only: flag: nothing touches it
     """
@@ -2717,8 +2689,7 @@ class rdm_shape_def(Structure):
     num_points: int
     kind: int
     size: Any
-    p: Any
-    q: Any
+    pose: rdm_pose
     color: Any
     seen_only: int
     _fields_ = [
@@ -2728,8 +2699,7 @@ class rdm_shape_def(Structure):
         ("num_points", c_int32),
         ("kind", c_int32),
         ("size", c_double * 3),
-        ("p", c_double * 3),
-        ("q", c_double * 4),
+        ("pose", rdm_pose),
         ("color", c_uint8 * 4),
         ("seen_only", c_int32),
     ]
@@ -2778,8 +2748,7 @@ class rdm_body_def(Structure):
     num_shapes: count
     name: unique among bodies and robots
     shapes: [num_shapes] 1 or more
-    p: position at the start, m
-    q: rotation; all 0: none
+    pose: at the start
     mass: kg
     moment: xx yy zz xy xz yz, kg m2; all 0: of the shapes, solid, of one density
     linear_damping: 1/s
@@ -2792,8 +2761,7 @@ class rdm_body_def(Structure):
     num_shapes: int
     name: bytes | None
     shapes: Any
-    p: Any
-    q: Any
+    pose: rdm_pose
     mass: float
     moment: Any
     linear_damping: float
@@ -2805,8 +2773,7 @@ class rdm_body_def(Structure):
         ("num_shapes", c_int32),
         ("name", c_char_p),
         ("shapes", POINTER(rdm_shape_def)),
-        ("p", c_double * 3),
-        ("q", c_double * 4),
+        ("pose", rdm_pose),
         ("mass", c_double),
         ("moment", c_double * 6),
         ("linear_damping", c_double),
@@ -2824,8 +2791,7 @@ class rdm_scene_robot(Structure):
     own: a robot of this scene alone, in the place of `robot`; NULL
     name: begins, with '_', the names of its links, joints and shapes; unique
     material: of its shapes; NULL: "default"
-    p: its base at the start, m
-    q: rotation; all 0: none
+    pose: of its base at the start
     base_damping: of a free base: of all links, 1/s
     free_base: flag: the base moves
     left: flag: the mirror image
@@ -2838,8 +2804,7 @@ class rdm_scene_robot(Structure):
     own: Any
     name: bytes | None
     material: bytes | None
-    p: Any
-    q: Any
+    pose: rdm_pose
     base_damping: float
     free_base: int
     left: int
@@ -2851,8 +2816,7 @@ class rdm_scene_robot(Structure):
         ("own", POINTER(rdm_robot_def)),
         ("name", c_char_p),
         ("material", c_char_p),
-        ("p", c_double * 3),
-        ("q", c_double * 4),
+        ("pose", rdm_pose),
         ("base_damping", c_double),
         ("free_base", c_int32),
         ("left", c_int32),
@@ -2943,31 +2907,19 @@ class rdm_joints(Structure):
     ]
 
 
-class Motion(Record):
-    """the joints of all robots of a world; the addresses hold within the call"""
-
-    p: tuple[float, ...]  # m
-    q: tuple[float, ...]  # rotation
-    v: tuple[float, ...]  # velocity of the frame's origin, m/s
-    w: tuple[float, ...]  # angular velocity, world axes, rad/s
-
-
 class rdm_motion(Structure):
     """the joints of all robots of a world; the addresses hold within the call
 
-    p: m
-    q: rotation
+    pose: where it is
     v: velocity of the frame's origin, m/s
     w: angular velocity, world axes, rad/s
     """
 
-    p: Any
-    q: Any
+    pose: rdm_pose
     v: Any
     w: Any
     _fields_ = [
-        ("p", c_double * 3),
-        ("q", c_double * 4),
+        ("pose", rdm_pose),
         ("v", c_double * 3),
         ("w", c_double * 3),
     ]
@@ -3319,6 +3271,7 @@ STRUCTS: dict[str, type[Structure]] = {
     "rdm_host": rdm_host,
     "rdm_option": rdm_option,
     "rdm_option_spec": rdm_option_spec,
+    "rdm_pose": rdm_pose,
     "rdm_field": rdm_field,
     "rdm_field_info": rdm_field_info,
     "rdm_tensor": rdm_tensor,
@@ -3809,22 +3762,12 @@ FUNCTIONS: dict[str, Function] = {
         """Fills the action buffer: all 0 (the middle of each joint's range), the nominal start pose, or
         uniform in [-1, 1] from the stream (seed, world, policy).
         """),
-    "rdm_pool_state_size": Function(
-        c_int32, {"p": c_void_p, "env": c_int32, "bytes": c_void_p},
-        {}, False,
-        """The whole state of world env, exact: a pool of the same task and options that sets it goes on
-        with the same bytes. read_state also rewrites obs and clears the other rows of that world. env
-        -1: all worlds in one block. FORMAT for bytes that are not whole, of another task or options, or
-        hold what no world can have: nothing changes. Bytes are for files and other processes. Snapshots
-        within one, as for going back some steps, are cheap by rdm_pool_copy, with a second pool whose
-        worlds are the ring: a thirtieth of writing and reading again, in a task of hands.
-        """),
     "rdm_pool_write_state": Function(
         c_int32, {"p": c_void_p, "env": c_int32, "bytes": c_void_p, "capacity": c_size_t, "size": c_void_p},
         {}, False,
         """to bytes [capacity];
-        *size is how many
-        there are
+        NULL asks for the
+        size
         """),
     "rdm_pool_read_state": Function(
         c_int32, {"p": c_void_p, "env": c_int32, "bytes": c_void_p, "size": c_size_t},
@@ -3838,12 +3781,12 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"p": c_void_p, "i": c_int32, "io": POINTER(rdm_shape_info)},
         {}, False,
         """i < num_shapes"""),
-    "rdm_pool_poses": Function(
-        c_int32, {"p": c_void_p, "env": c_int32, "pose": c_void_p},
-        {"pose": Rows("float32", ("num_shapes", "7"))}, False,
-        """pose [num_shapes][7]: position (m), quaternion (x, y, z, w); world frame of that world."""),
-    "rdm_pool_contacts": Function(
-        c_int32, {"p": c_void_p, "env": c_int32, "out": POINTER(rdm_contact), "capacity": c_int32, "count": c_void_p},
+    "rdm_pool_get_poses": Function(
+        c_int32, {"p": c_void_p, "env": c_int32, "poses": c_void_p},
+        {"poses": Rows("float64", ("num_shapes", "7"))}, False,
+        """To poses [num_shapes] those of the shapes, in the world's frame."""),
+    "rdm_pool_get_contacts": Function(
+        c_int32, {"p": c_void_p, "env": c_int32, "out": POINTER(rdm_contact), "capacity": c_size_t, "count": c_void_p},
         {}, False,
         """Writes up to capacity contacts to out [capacity], of things asleep as they fell asleep; *count is
         how many there are.
@@ -4257,10 +4200,8 @@ FUNCTIONS: dict[str, Function] = {
         """),
     "rdm_map_meets": Function(
         c_int32, {"m": c_void_p, "pose": c_void_p, "half": c_void_p, "meets": c_void_p},
-        {"pose": Rows("float32", ("7",)), "half": Rows("float32", ("3",))}, True,
-        """meets is 1 when an occupied voxel meets the turned box: pose [7] (position, quaternion), half
-        sizes half [3].
-        """),
+        {"pose": Rows("float64", ("7",)), "half": Rows("float32", ("3",))}, True,
+        """meets is 1 when an occupied voxel meets the box of half sizes half [3] that stands at `pose`."""),
     "rdm_map_raycast": Function(
         c_int32, {"m": c_void_p, "origin": c_void_p, "direction": c_void_p, "range": c_float, "through_unknown": c_int32, "hit": c_void_p, "found": c_void_p},
         {"origin": Rows("float32", ("3",)), "direction": Rows("float32", ("3",)), "hit": Rows("float32", ("3",))}, True,
@@ -4276,8 +4217,8 @@ FUNCTIONS: dict[str, Function] = {
         """),
     "rdm_map_grid": Function(
         c_int32, {"m": c_void_p, "pose": c_void_p, "n": c_void_p, "side": c_float, "out": c_void_p},
-        {"pose": Rows("float32", ("7",)), "n": Rows("int32", ("3",)), "out": Rows("int8", ("n0", "n1", "n2"))}, True,
-        """A grid of counts n [3] of cells of `side` m (each count 1 to 1024) about pose [7]: what the map
+        {"pose": Rows("float64", ("7",)), "n": Rows("int32", ("3",)), "out": Rows("int8", ("n0", "n1", "n2"))}, True,
+        """A grid of counts n [3] of cells of `side` m (each count 1 to 1024) about `pose`: what the map
         says at their centres, out [n0][n1][n2], x outermost: 1 occupied, 0 free, -1 unknown.
         """),
     "rdm_map_write": Function(
@@ -4641,17 +4582,17 @@ FUNCTIONS: dict[str, Function] = {
         rdm_robot_get_def; folded and closed are 0 where it has none.
         """),
     "rdm_robot_kinematics": Function(
-        c_int32, {"robot": c_int32, "q": c_void_p, "poses": c_void_p, "flange": c_void_p, "tips": c_void_p, "palm": c_void_p},
-        {"q": Rows("float64", ("num_links",)), "poses": Rows("float64", ("num_links", "7")), "flange": Rows("float64", ("7",)), "tips": Rows("float64", ("num_fingers", "3")), "palm": Rows("float64", ("7",))}, True,
-        """For joints q [num_links], in the root frame: poses [num_links][7] of the links, position (m) and
-        quaternion. flange [7], tips [num_fingers][3] and palm [7] (origin at hold_p, y into the palm, z
-        as the fingers point) may be NULL.
+        c_int32, {"robot": c_int32, "q": c_void_p, "links": c_void_p, "flange": c_void_p, "tips": c_void_p, "palm": c_void_p},
+        {"q": Rows("float64", ("num_links",)), "links": Rows("float64", ("num_links", "7")), "flange": Rows("float64", ("7",)), "tips": Rows("float64", ("num_fingers", "3")), "palm": Rows("float64", ("7",))}, True,
+        """For joints q [num_links], in the root frame: poses of the links to links [num_links]. *flange,
+        tips [num_fingers][3] and *palm (origin at hold_p, y into the palm, z as the fingers point) may be
+        NULL.
         """),
     "rdm_robot_reach": Function(
-        c_int32, {"robot": c_int32, "pose": c_void_p, "q": c_void_p, "found": c_void_p},
-        {"pose": Rows("float64", ("7",)), "q": Rows("float64", ("num_links",))}, True,
-        """Joints q [num_links], from where they are, to where the arm's flange has pose [7] in the root
-        frame. *found is 0 when the least squares end elsewhere. UNSUPPORTED: no flange.
+        c_int32, {"robot": c_int32, "flange": c_void_p, "q": c_void_p, "found": c_void_p},
+        {"flange": Rows("float64", ("7",)), "q": Rows("float64", ("num_links",))}, True,
+        """Joints q [num_links], from where they are, to where the arm's flange has the pose `flange` in the
+        root frame. *found is 0 when the least squares end elsewhere. UNSUPPORTED: no flange.
         """),
     "rdm_object_def_init": Function(
         c_int32, {"def": POINTER(rdm_object_def), "size": c_size_t},
@@ -4764,12 +4705,12 @@ FUNCTIONS: dict[str, Function] = {
         {}, True,
         """index: NULL"""),
     "rdm_scene_add_object": Function(
-        c_int32, {"scene": c_void_p, "object": c_int32, "name": c_char_p, "p": c_void_p, "q": c_void_p, "scale": c_double, "index": c_void_p},
-        {"p": Rows("float64", ("3",)), "q": Rows("float64", ("4",))}, True,
-        """An object at the pose p [3] (m), q [4] (all 0: none) of its centre of mass, as the body and first
-        shape `name` (others: name_1, name_2 ...), `scale` times as large, 0.05 to 20, its mass as it is;
-        index: NULL. Its material is one of the scene: a new one rubs on each that is there with the
-        object's friction, on another object's with the lower of the two.
+        c_int32, {"scene": c_void_p, "object": c_int32, "name": c_char_p, "pose": c_void_p, "scale": c_double, "index": c_void_p},
+        {"pose": Rows("float64", ("7",))}, True,
+        """An object whose centre of mass has that pose, as the body and first shape `name` (others: name_1,
+        name_2 ...), `scale` times as large, 0.05 to 20, its mass as it is; index: NULL. Its material is
+        one of the scene: a new one rubs on each that is there with the object's friction, on another
+        object's with the lower of the two.
         """),
     "rdm_scene_add_static": Function(
         c_int32, {"scene": c_void_p, "shape": POINTER(rdm_shape_def)},
@@ -4834,9 +4775,9 @@ FUNCTIONS: dict[str, Function] = {
         {}, True,
         """of its centre of mass"""),
     "rdm_world_get_shape": Function(
-        c_int32, {"world": c_void_p, "shape": c_int32, "pose": c_void_p},
-        {"pose": Rows("float64", ("7",))}, True,
-        """position, rotation"""),
+        c_int32, {"world": c_void_p, "shape": c_int32, "out": c_void_p},
+        {"out": Rows("float64", ("7",))}, True,
+        """of its frame"""),
     "rdm_world_get_sensor": Function(
         c_int32, {"world": c_void_p, "sensor": c_int32, "force": c_void_p, "torque": c_void_p},
         {"force": Rows("float64", ("3",)), "torque": Rows("float64", ("3",))}, True,

@@ -18,7 +18,7 @@ from ._hold import LAST, Watch
 from ._library import (Handle, assign, check, encoded, failure, filled, int32, lib, raise_kept, raised, sized)
 from ._names import Hinted, keywords, nearest
 from ._options import Options, Value, read_settings, settings_of
-from ._rows import Array, Borrowed, FloatArray, address, given, made, shape_of
+from ._rows import Array, Borrowed, DoubleArray, FloatArray, address, given, made, shape_of
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -334,7 +334,7 @@ class Pool(Hinted):
         """The whole state of one world, or of all (-1)."""
         with self._lock:
             size = c_size_t()
-            self._check(lib.rdm_pool_state_size(self._p, int32(env, "env"), byref(size)))
+            self._check(lib.rdm_pool_write_state(self._p, int32(env, "env"), None, 0, byref(size)))
             raw = ctypes.create_string_buffer(size.value)
             self._check(lib.rdm_pool_write_state(self._p, env, raw, size, byref(size)))
             return raw.raw
@@ -398,11 +398,11 @@ class Pool(Hinted):
             raise self._fail(0)
         return self._p
 
-    def poses(self, env: int = 0) -> FloatArray:
+    def poses(self, env: int = 0) -> DoubleArray:
         """[num_shapes][7] position (m) and quaternion (x, y, z, w) of each shape of one world."""
-        out = np.empty((self.spec.num_shapes, 7), np.float32)
+        out = np.empty((self.spec.num_shapes, 7))
         with self._lock:
-            self._check(lib.rdm_pool_poses(self._p, int32(env, "env"), out.ctypes.data))
+            self._check(lib.rdm_pool_get_poses(self._p, int32(env, "env"), out.ctypes.data))
         return out
 
     def hull(self, shape: int) -> FloatArray:
@@ -460,11 +460,11 @@ class Pool(Hinted):
     def contacts(self, env: int = 0) -> Array:
         """Contact points of the last substep: rows of shape_a, shape_b, position, normal, force, depth."""
         out = np.empty(0, np.dtype(_abi.rdm_contact))
-        count = c_int32()
+        count = c_size_t()
         with self._lock:
             while True:
                 rows = out.ctypes.data_as(ctypes.POINTER(_abi.rdm_contact))
-                self._check(lib.rdm_pool_contacts(self._p, int32(env, "env"), rows, len(out), byref(count)))
+                self._check(lib.rdm_pool_get_contacts(self._p, int32(env, "env"), rows, len(out), byref(count)))
                 if count.value <= len(out):
                     return out[:count.value]
                 out = np.empty(count.value, out.dtype)

@@ -14,8 +14,9 @@ if TYPE_CHECKING:
     import numpy.typing as npt
     Array = npt.NDArray[Any]
     FloatArray = npt.NDArray[np.float32]
+    DoubleArray = npt.NDArray[np.float64]
 else:  # numpy.typing alone takes longer to import than redman
-    Array = FloatArray = np.ndarray
+    Array = FloatArray = DoubleArray = np.ndarray
 ALIGNMENT = 64
 
 

@@ -44,13 +44,12 @@ Place inverse(const Place& a) {
   return turn * back;
 }
 
-template <class T>
-Place place_from(const T pose[7]) {
+Place place_from(const rdm_pose& pose) {
   Place out;
-  for (int k = 0; k < 3; ++k) out.p[k] = static_cast<double>(pose[k]);
+  for (int k = 0; k < 3; ++k) out.p[k] = pose.p[k];
   double square = 0;
   for (int k = 0; k < 4; ++k) {
-    out.q[k] = static_cast<double>(pose[3 + k]);
+    out.q[k] = pose.q[k];
     square += out.q[k] * out.q[k];
   }
   for (double& q : out.q) q /= std::sqrt(square);
@@ -90,20 +89,16 @@ int32_t find_robot(const std::string& name) {
 bool find_base(const redman::Pool& pool, int32_t robot, const std::string& prefix, Place* out) {
   const rdm_robot_def def = def_at(robot);
   const int32_t count = pool.spec().num_shapes;
-  std::vector<float> poses(7 * static_cast<size_t>(count));
-  redman::check(rdm_pool_poses(pool.get(), 0, poses.data()));
+  const std::vector<rdm_pose> poses = pool.poses();
   for (int32_t i = 0; i < def.num_shapes; ++i) {
     rdm_robot_shape own;
     redman::check(rdm_robot_shape_at(robot, i, &own));
     if (own.link != RDM_LINK_ROOT) continue;
-    double local[7];
-    std::copy_n(own.p, 3, local);
-    std::copy_n(own.q, 4, local + 3);
     for (int32_t k = 0; k < count; ++k) {
       rdm_shape_info shape = RDM_INIT(rdm_shape_info);
       redman::check(rdm_pool_shape_at(pool.get(), k, &shape));
       if (prefix + own.name != shape.name) continue;
-      *out = place_from(&poses[7 * static_cast<size_t>(k)]) * inverse(place_from(local));
+      *out = place_from(poses[static_cast<size_t>(k)]) * inverse(place_from(own.pose));
       return true;
     }
   }
@@ -247,28 +242,30 @@ void DemoHand::angles(const float* action, double* q) const {
 }
 
 Place DemoHand::place(const float* action, int32_t finger) const {
-  std::vector<double> q(rows_.size()), poses(7 * rows_.size()), tips(3 * fingers_.size());
+  std::vector<double> q(rows_.size()), tips(3 * fingers_.size());
+  std::vector<rdm_pose> links(rows_.size());
   angles(action, q.data());
-  double palm[7];
-  redman::check(rdm_robot_kinematics(robot_, q.data(), poses.data(), nullptr, tips.data(), palm));
+  rdm_pose palm;
+  redman::check(rdm_robot_kinematics(robot_, q.data(), links.data(), nullptr, tips.data(), &palm));
   Place out = place_from(palm);
   if (finger >= 0) std::copy_n(&tips[3 * static_cast<size_t>(finger)], 3, out.p);
   return base_ * out;
 }
 
 bool DemoHand::reach(const Place& to, int32_t finger, float* action) const {
-  std::vector<double> q(rows_.size()), poses(7 * rows_.size()), tips(3 * fingers_.size());
+  std::vector<double> q(rows_.size()), tips(3 * fingers_.size());
+  std::vector<rdm_pose> links(rows_.size());
   angles(action, q.data());
-  double flange[7], palm[7];
-  redman::check(rdm_robot_kinematics(robot_, q.data(), poses.data(), flange, tips.data(), palm));
+  rdm_pose flange, palm;
+  redman::check(rdm_robot_kinematics(robot_, q.data(), links.data(), &flange, tips.data(), &palm));
   Place point = place_from(palm);
   if (finger >= 0) std::copy_n(&tips[3 * static_cast<size_t>(finger)], 3, point.p);
   const Place goal = inverse(base_) * to * inverse(point) * place_from(flange);
-  double pose[7];
-  std::copy_n(goal.p, 3, pose);
-  std::copy_n(goal.q, 4, pose + 3);
+  rdm_pose pose;
+  std::copy_n(goal.p, 3, pose.p);
+  std::copy_n(goal.q, 4, pose.q);
   int32_t found = 0;
-  redman::check(rdm_robot_reach(robot_, pose, q.data(), &found));
+  redman::check(rdm_robot_reach(robot_, &pose, q.data(), &found));
   if (!found) return false;
   for (size_t k = 0; k < joint_.size(); ++k) {
     const Entry& e = entries_[k];

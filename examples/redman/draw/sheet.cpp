@@ -85,10 +85,10 @@ Shown show_object(int32_t index) {
   for (int32_t i = 0; i < def.num_shapes; ++i) {
     rdm_shape_def s;
     redman::check(rdm_object_shape_at(index, i, &s));
-    for (int32_t k = 0; k < s.num_points; ++k) b.add(turned(s.q, s.points + 3 * k), s.p);
+    for (int32_t k = 0; k < s.num_points; ++k) b.add(turned(s.pose.q, s.points + 3 * k), s.pose.p);
     double half[3];
     half_sizes(s, half);
-    if (s.kind != RDM_SHAPE_HULL) b.add_box(half, s.q, s.p);
+    if (s.kind != RDM_SHAPE_HULL) b.add_box(half, s.pose.q, s.pose.p);
   }
   b.give(&out);
   return out;
@@ -103,21 +103,21 @@ Shown show_robot(int32_t index, int32_t joints) {
     redman::check(rdm_robot_joint(index, i, &j));
     out.q[i] = j.lower + kOpen * (j.upper - j.lower);
   }
-  std::vector<double> poses(static_cast<size_t>(7 * joints));
-  redman::check(rdm_robot_kinematics(index, out.q, poses.data(), nullptr, nullptr, nullptr));
+  std::vector<rdm_pose> links(static_cast<size_t>(joints));
+  redman::check(rdm_robot_kinematics(index, out.q, links.data(), nullptr, nullptr, nullptr));
   Bounds b;
   rdm_robot_shape s;
   for (int32_t i = 0; rdm_robot_shape_at(index, i, &s) == RDM_OK; ++i) {
-    static constexpr double kRoot[7] = {0, 0, 0, 0, 0, 0, 1};
-    const double* X = s.link < 0 ? kRoot : poses.data() + 7 * s.link;
+    static constexpr rdm_pose kRoot = {{0, 0, 0}, {0, 0, 0, 1}};
+    const rdm_pose& X = s.link < 0 ? kRoot : links[static_cast<size_t>(s.link)];
     double half[3];
     half_sizes(s, half);
     Bounds own;  // in the link
-    own.add_box(half, s.q, s.p);
+    own.add_box(half, s.pose.q, s.pose.p);
     for (int c = 0; c < 8; ++c) {
       const double corner[3] = {c & 1 ? own.high[0] : own.low[0], c & 2 ? own.high[1] : own.low[1],
                                 c & 4 ? own.high[2] : own.low[2]};
-      b.add(turned(X + 3, corner), X);
+      b.add(turned(X.q, corner), X.p);
     }
   }
   b.give(&out);
@@ -130,12 +130,12 @@ rdm_result build(void* user, rdm_scene* scene, void*) {
   ground.name = "ground", ground.kind = RDM_SHAPE_PLANE;
   ground.color[0] = ground.color[1] = ground.color[2] = 225, ground.color[3] = 255;
   if (const rdm_result r = rdm_scene_add_static(scene, &ground)) return r;
-  const double p[3] = {0, 0, shown.lift}, q[4] = {};
-  if (!shown.robot) return rdm_scene_add_object(scene, shown.index, "object", p, q, 1, nullptr);
+  const rdm_pose lifted = {{0, 0, shown.lift}, {}};
+  if (!shown.robot) return rdm_scene_add_object(scene, shown.index, "object", &lifted, 1, nullptr);
   rdm_scene_robot robot;
   if (const rdm_result r = rdm_scene_robot_init(&robot, sizeof robot)) return r;
   robot.robot = shown.index, robot.name = "it";
-  robot.p[2] = shown.lift;
+  robot.pose.p[2] = shown.lift;
   return rdm_scene_add_robot(scene, &robot, nullptr);
 }
 rdm_result reset(void* user, const void*, rdm_world* world, void*, rdm_random*) {

@@ -58,19 +58,20 @@ Playback begin_playback(const redman::Pool& pool, const std::vector<double>& lim
 }
 
 void add_frame(Playback& p, const redman::Pool& pool) {
-  p.poses.resize(p.poses.size() + p.bodies.size() * 7);
-  if (!p.bodies.empty())
-    redman::check(rdm_pool_poses(pool.get(), 0, p.poses.data() + p.frames * p.bodies.size() * 7));
+  for (const rdm_pose& pose : pool.poses()) {
+    for (const double v : pose.p) p.poses.push_back(static_cast<float>(v));
+    for (const double v : pose.q) p.poses.push_back(static_cast<float>(v));
+  }
   p.reward.push_back(pool.reward()[0]);
   p.episode_return.push_back(pool.episode_return()[0]);
   append(p.cost, pool.cost()[0]);
   append(p.episode_cost, pool.episode_cost()[0]);
   p.success.push_back(pool.success()[0]);
-  int32_t count = 0;
-  redman::check(rdm_pool_contacts(pool.get(), 0, nullptr, 0, &count));
+  size_t count = 0;
+  redman::check(rdm_pool_get_contacts(pool.get(), 0, nullptr, 0, &count));
   const size_t before = p.contacts.size();
-  p.contacts.resize(before + static_cast<size_t>(count));
-  redman::check(rdm_pool_contacts(pool.get(), 0, p.contacts.data() + before, count, &count));
+  p.contacts.resize(before + count);
+  redman::check(rdm_pool_get_contacts(pool.get(), 0, p.contacts.data() + before, count, &count));
   p.contacts_end.push_back(p.contacts.size());
   p.terminated = pool.terminated()[0] != 0;
   ++p.frames;

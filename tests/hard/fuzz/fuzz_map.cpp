@@ -68,7 +68,8 @@ void one(const unsigned char* data, size_t size) {
   HARD_REQUIRE(rdm_map_get_info(m, &info) == RDM_OK && info.bytes <= info.bytes_max, "%llu bytes of %llu",
                static_cast<unsigned long long>(info.bytes), static_cast<unsigned long long>(info.bytes_max));
   const float point[3] = {0.2f, 0.2f, 0.2f}, low[3] = {-1, -1, -1}, high[3] = {2, 2, 2};
-  const float pose[7] = {0, 0, 0, 0, 0, 0, 1}, half[3] = {1, 1, 1}, down[3] = {0, 0, -1};
+  const float half[3] = {1, 1, 1}, down[3] = {0, 0, -1};
+  const rdm_pose pose{};
   float p = 0, hit[3], distance = 0;
   rdm_voxel voxel[4];
   size_t n = 0;
@@ -78,11 +79,11 @@ void one(const unsigned char* data, size_t size) {
   HARD_REQUIRE(rdm_map_query(m, point, 1, &p) == RDM_OK && (p == -1 || (p >= 0 && p <= 1)), "probability %g",
                static_cast<double>(p));
   HARD_REQUIRE(rdm_map_box(m, low, high, voxel, 4, &n) == RDM_OK, "%s", rdm_last_error());
-  HARD_REQUIRE(rdm_map_meets(m, pose, half, &yes) == RDM_OK, "%s", rdm_last_error());
+  HARD_REQUIRE(rdm_map_meets(m, &pose, half, &yes) == RDM_OK, "%s", rdm_last_error());
   HARD_REQUIRE(rdm_map_raycast(m, high, down, 3, 1, hit, &yes) == RDM_OK, "%s", rdm_last_error());
   HARD_REQUIRE(rdm_map_distance(m, point, 1, 1, &distance) == RDM_OK && std::isfinite(distance), "%s",
                rdm_last_error());
-  HARD_REQUIRE(rdm_map_grid(m, pose, cells, 0.1f, grid) == RDM_OK, "%s", rdm_last_error());
+  HARD_REQUIRE(rdm_map_grid(m, &pose, cells, 0.1f, grid) == RDM_OK, "%s", rdm_last_error());
   const Bytes again = saved(m, RDM_MAP_FULL);
   HARD_REQUIRE(rdm_map_read(m, again.data(), again.size()) == RDM_OK, "a saved map does not load: %s",
                rdm_last_error());
