@@ -52,17 +52,16 @@ rdm_result rdm_pool_shape_at(const rdm_pool* p, int32_t i, rdm_shape_info* io) {
   });
 }
 
-rdm_result rdm_pool_get_hull(const rdm_pool* p, int32_t i, float* points, int32_t capacity, int32_t* count) {
+rdm_result rdm_pool_get_hull(const rdm_pool* p, int32_t i, float* points, size_t capacity, size_t* count) {
   return call_on(p, [&] {
     need(count, "count");
     const Scene& scene = p->pool->task().scene();
     need_index(i, static_cast<int64_t>(scene.shapes.size()), "i");
     const Hull* hull = scene.hull_of(scene.shapes[static_cast<size_t>(i)]);
     if (!hull) fail(Code::kArgument, "i: shape %d is no hull", i);
-    if (capacity < 0) fail(Code::kRange, "capacity: %d is negative", capacity);
-    if (capacity > 0) need(points, "points");
-    *count = hull->num_points;
-    for (int32_t k = 0; k < std::min(capacity, *count); ++k) to_floats(hull->points[k], points + 3 * k);
+    need_room(points, capacity, "points");
+    *count = static_cast<size_t>(hull->num_points);
+    for (size_t k = 0; k < std::min(capacity, *count); ++k) to_floats(hull->points[k], points + 3 * k);
   });
 }
 

@@ -133,11 +133,11 @@ rdm_result rdm_map_insert(rdm_map* m, const float origin[3], const float* points
 }
 
 rdm_result rdm_map_scan(rdm_map* m, rdm_pool* p, int32_t env, const char* camera, int32_t w, int32_t h,
-                        const int32_t* skip, int32_t num_skip, uint64_t* dropped) {
+                        const int32_t* skip, size_t num_skip, uint64_t* dropped) {
   return call_on(m, [&] {
     const Use use(p);
     need_index(env, p->pool->config().num_envs, "env");
-    if (num_skip < 0) fail(Code::kRange, "num_skip: %d is negative", num_skip);
+    if (num_skip > SIZE_MAX / 16) fail(Code::kRange, "num_skip: %zu is too many", num_skip);
     if (num_skip > 0) need(skip, "skip");
     const HostScope scope(m->hooks);
     const Camera eye = pool_camera(p, env, camera);

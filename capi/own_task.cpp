@@ -222,9 +222,9 @@ const char* TextStore::keep(const char* text) {
   return texts_.back().data();
 }
 
-void rdm::capi::check_action_dim(int32_t count, const char* name) {
+void rdm::capi::check_action_dim(int64_t count, const char* name) {
   if (count < 1 || count > kMostActions)
-    fail(Code::kRange, "%s: %d is outside [1, %d]", name, count, kMostActions);
+    fail(Code::kRange, "%s: %lld is outside [1, %d]", name, static_cast<long long>(count), kMostActions);
 }
 
 void rdm::capi::copy_actions(const float* in, int32_t count, const char* name, Vector<float>* out) {

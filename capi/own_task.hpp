@@ -97,7 +97,7 @@ class OwnTask final : public TaskSource {
 // Arrays [count] of actions, null: zeros. Error(kRange) for an entry outside [-1, 1].
 void copy_actions(const float* in, int32_t count, const char* name, Vector<float>* out);
 // Error(kRange) for a count outside [1, 1024].
-void check_action_dim(int32_t count, const char* name);
+void check_action_dim(int64_t count, const char* name);
 inline constexpr int32_t kMostEntries = 16384;  // of an observation
 
 }  // namespace rdm::capi

@@ -357,15 +357,15 @@ rdm_result rdm_policy_field_at(const rdm_policy* p, int32_t i, rdm_field_info* i
   });
 }
 
-rdm_result rdm_policy_get_columns(const rdm_policy* p, int32_t* columns, int32_t capacity, int32_t* count) {
+rdm_result rdm_policy_get_columns(const rdm_policy* p, int32_t* columns, size_t capacity, size_t* count) {
   return call([&] {
     need_handle(p);
     need(count, "count");
-    if (capacity < 0) fail(Code::kRange, "capacity: %d is negative", capacity);
-    if (capacity > 0) need(columns, "columns");
+    need_room(columns, capacity, "columns");
     const PolicyView& v = p->policy->view();
-    for (int32_t i = 0; i < std::min(capacity, v.entries()); ++i) columns[i] = v.columns ? v.columns[i] : i;
-    *count = v.entries();
+    *count = static_cast<size_t>(v.entries());
+    for (size_t i = 0; i < std::min(capacity, *count); ++i)
+      columns[i] = v.columns ? v.columns[i] : static_cast<int32_t>(i);
   });
 }
 

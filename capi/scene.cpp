@@ -519,16 +519,17 @@ rdm_result rdm_scene_add_static(rdm_scene* scene, const rdm_shape_def* shape) {
   });
 }
 
-rdm_result rdm_scene_set_field(rdm_scene* scene, const char* field, int32_t count) {
+rdm_result rdm_scene_set_field(rdm_scene* scene, const char* field, size_t count) {
   return call_inside([&] {
     need_whole(scene);
     need(field, "field");
     if (count < 1 || count > kMostEntries)
-      fail(Code::kRange, "count: %d of field %s is outside [1, %d]", count, Quoted(field).text, kMostEntries);
+      fail(Code::kRange, "count: %zu of field %s is outside [1, %d]", count, Quoted(field).text,
+           kMostEntries);
     Vector<const char*> names;
     for (FieldSpec& f : scene->fields) {
       if (f.name == field) {
-        f.count = count;
+        f.count = static_cast<int32_t>(count);
         return;
       }
       names.push_back(f.name.text);
@@ -537,13 +538,14 @@ rdm_result rdm_scene_set_field(rdm_scene* scene, const char* field, int32_t coun
   });
 }
 
-rdm_result rdm_scene_set_actions(rdm_scene* scene, int32_t count, const float* hold, const float* mean) {
+rdm_result rdm_scene_set_actions(rdm_scene* scene, size_t count, const float* hold, const float* mean) {
   return call_inside([&] {
     need_whole(scene);
-    check_action_dim(count, "count");
+    check_action_dim(static_cast<int64_t>(count), "count");
+    const auto n = static_cast<int32_t>(count);
     Vector<float> h, m;
-    copy_actions(hold, count, "hold", &h);
-    copy_actions(mean, count, "mean", &m);
+    copy_actions(hold, n, "hold", &h);
+    copy_actions(mean, n, "mean", &m);
     scene->hold = std::move(h);
     scene->mean = std::move(m);
   });

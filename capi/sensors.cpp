@@ -63,28 +63,30 @@ size_t sampling_bytes(int32_t count) {
 }
 }  // namespace
 
-size_t rdm_sample_scratch(int32_t count) {
-  return count < 1 || count > kMaxCloud ? 0 : sampling_bytes(count) + kScratchSlack;
+size_t rdm_sample_scratch(size_t count) {
+  return count < 1 || count > kMaxCloud ? 0 : sampling_bytes(static_cast<int32_t>(count)) + kScratchSlack;
 }
 
-rdm_result rdm_sample_furthest(const float* points, int32_t count, int32_t wanted, int32_t start,
+rdm_result rdm_sample_furthest(const float* points, size_t count, size_t wanted, int32_t start,
                                int32_t* chosen, void* scratch, size_t scratch_bytes) {
   return call([&] {
     need(points, "points");
     need(chosen, "chosen");
     need(scratch, "scratch");
-    if (count < 1 || count > kMaxCloud) fail(Code::kRange, "count: %d is outside [1, %d]", count, kMaxCloud);
-    const size_t bytes = sampling_bytes(count);
+    if (count < 1 || count > kMaxCloud) fail(Code::kRange, "count: %zu is outside [1, %d]", count, kMaxCloud);
+    if (wanted < 1 || wanted > count) fail(Code::kRange, "wanted: %zu is outside [1, %zu]", wanted, count);
+    const auto n = static_cast<int32_t>(count);
+    need_index(start, n, "start");
+    const size_t bytes = sampling_bytes(n);
     scratch = aligned_scratch(scratch, scratch_bytes, bytes);
-    for (int64_t i = 0; i < 3 * int64_t{count}; ++i)
-      if (!std::isfinite(points[i]))
-        fail(Code::kArgument, "points: entry %lld is not finite", static_cast<long long>(i));
+    for (size_t i = 0; i < 3 * count; ++i)
+      if (!std::isfinite(points[i])) fail(Code::kArgument, "points: entry %zu is not finite", i);
     HostHooks lent;  // an arena over the caller's memory
     lent.user = scratch;
     lent.alloc = [](void* user, size_t, size_t) { return user; };
     lent.release = [](void*, void*, size_t, size_t) {};
     Arena arena(lent, bytes);
-    sample_furthest(points, count, wanted, start, carve_furthest_scratch(arena, count), chosen);
+    sample_furthest(points, n, static_cast<int32_t>(wanted), start, carve_furthest_scratch(arena, n), chosen);
   });
 }
 #endif

@@ -399,11 +399,10 @@ void check_pools(PoolConfig config, const char* task, Patience* patience) {
 }  // namespace
 
 rdm_result rdm_task_check(const char* task, const char* settings, rdm_stop stop, void* user, char* error,
-                          int32_t error_size) {
+                          size_t error_size) {
   const rdm_result r = call([&] {
     need(task, "task");
-    if (error && error_size < 1)
-      fail(Code::kRange, "error_size: %d is less than 1, but error is set", error_size);
+    if (error && error_size < 1) fail(Code::kRange, "error_size: it is 0, but error is set");
     register_builtin_tasks();
     PoolConfig config;
     config.hooks = host();
@@ -416,7 +415,7 @@ rdm_result rdm_task_check(const char* task, const char* settings, rdm_stop stop,
     }
     check_pools(config, task, &patience);
   });
-  if (r != RDM_OK && error && error_size > 0) copy_text(error, static_cast<size_t>(error_size), last_error());
+  if (r != RDM_OK && error && error_size > 0) copy_text(error, error_size, last_error());
   return r;
 }
 #endif

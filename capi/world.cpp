@@ -53,14 +53,15 @@ void need_free_base(const World& w, int32_t robot) {
   const ArticulationDef& def = w.scene().def.articulations[static_cast<size_t>(robot)];
   if (!def.free_base) fail(Code::kState, "robot %s: its base is fixed", def.name.text);
 }
-void need_numbers(const double* x, int32_t n, int32_t wanted, const char* name) {
-  if (n != wanted) fail(Code::kRange, "n: %d %s, the robot has %d", n, name, wanted);
+void need_numbers(const double* x, size_t n, size_t wanted, const char* name) {
+  if (n != wanted) fail(Code::kRange, "n: %zu %s, the robot has %zu", n, name, wanted);
   need(x, name);
 }
 
-void need_joints(const World& w, int32_t first, int32_t n) {
-  if (n < 0 || first < 0 || n > w.scene().num_links - first)
-    fail(Code::kRange, "first, n: %d joints from %d on, of %d", n, first, w.scene().num_links);
+void need_joints(const World& w, int32_t first, size_t n) {
+  const int32_t all = w.scene().num_links;
+  if (first < 0 || first > all || n > static_cast<size_t>(all - first))
+    fail(Code::kRange, "first, n: %zu joints from %d on, of %d", n, first, all);
 }
 
 double* place_of(const rdm_factor& f, int64_t materials, Dynamics* d) {
@@ -203,15 +204,13 @@ rdm_result rdm_world_get_touch(const rdm_world* world, int32_t group, int32_t* p
   });
 }
 
-rdm_result rdm_world_get_contacts(const rdm_world* world, rdm_contact* out, int32_t capacity,
-                                  int32_t* count) {
+rdm_result rdm_world_get_contacts(const rdm_world* world, rdm_contact* out, size_t capacity, size_t* count) {
   return call_inside([&] {
     const World& w = look(world);
     need(count, "count");
-    if (capacity < 0) fail(Code::kRange, "capacity: %d is negative", capacity);
-    if (capacity > 0) need(out, "out");
-    *count = w.num_contacts();
-    for (int32_t i = 0; i < std::min(capacity, *count); ++i) {
+    need_room(out, capacity, "out");
+    *count = static_cast<size_t>(w.num_contacts());
+    for (size_t i = 0; i < std::min(capacity, *count); ++i) {
       const Contact& c = w.contacts()[i];
       out[i].shape_a = c.shape_a;
       out[i].shape_b = c.shape_b;
@@ -249,45 +248,45 @@ rdm_result rdm_world_set_base(rdm_world* world, int32_t robot, const rdm_motion*
 }
 
 rdm_result rdm_world_set_joints(rdm_world* world, int32_t robot, const double* q, const double* qd,
-                                int32_t n) {
+                                size_t n) {
   return call_inside([&] {
     World& w = change(world);
     need_robot(w, robot);
     const auto a = static_cast<size_t>(robot);
-    need_numbers(q, n, static_cast<int32_t>(w.scene().def.articulations[a].links.size()), "q");
+    need_numbers(q, n, w.scene().def.articulations[a].links.size(), "q");
     const double still[kMaxRobotLinks] = {};
     w.set_joints(robot, q, qd ? qd : still);
     const int32_t first = w.scene().link_offset[a];
-    for (int32_t i = 0; i < n; ++i) {
+    for (int32_t i = 0; i < static_cast<int32_t>(n); ++i) {
       const JointDef& joint = w.scene().link(first + i).joint;
       w.target()[first + i] = std::clamp(q[i], joint.lower, joint.upper);
     }
   });
 }
 
-rdm_result rdm_world_set_targets(rdm_world* world, int32_t first, const double* targets, int32_t n) {
+rdm_result rdm_world_set_targets(rdm_world* world, int32_t first, const double* targets, size_t n) {
   return call_inside([&] {
     World& w = change(world);
     need_joints(w, first, n);
     if (n > 0) need(targets, "targets");
-    for (int32_t i = 0; i < n; ++i)
+    for (size_t i = 0; i < n; ++i)
       if (!bounded(targets[i], kStateBound))
-        fail(Code::kArgument, "targets[%d] is not finite or beyond %g", i, kStateBound);
+        fail(Code::kArgument, "targets[%zu] is not finite or beyond %g", i, kStateBound);
     std::copy_n(targets, n, w.target() + first);
   });
 }
 
-rdm_result rdm_world_set_commands(rdm_world* world, int32_t robot, const double* commands, int32_t n) {
+rdm_result rdm_world_set_commands(rdm_world* world, int32_t robot, const double* commands, size_t n) {
   return call_inside([&] {
     World& w = change(world);
     need_robot(w, robot);
     const PlacedRobot& r = world->scene->robots[static_cast<size_t>(robot)];
-    need_numbers(commands, n, static_cast<int32_t>(r.commands.size()), "commands");
-    for (int32_t i = 0; i < n; ++i)
-      if (!std::isfinite(commands[i])) fail(Code::kArgument, "commands[%d] is not finite", i);
+    need_numbers(commands, n, r.commands.size(), "commands");
+    for (size_t i = 0; i < n; ++i)
+      if (!std::isfinite(commands[i])) fail(Code::kArgument, "commands[%zu] is not finite", i);
     double* target = w.target();
-    for (int32_t i = 0; i < n; ++i) {
-      const PlacedRobot::Command& c = r.commands[static_cast<size_t>(i)];
+    for (size_t i = 0; i < n; ++i) {
+      const PlacedRobot::Command& c = r.commands[i];
       const double a =
           c.curve ? c.curve->at(commands[i])
                   : std::clamp(c.lower + 0.5 * (commands[i] + 1) * (c.upper - c.lower), c.lower, c.upper);
@@ -298,40 +297,40 @@ rdm_result rdm_world_set_commands(rdm_world* world, int32_t robot, const double*
   });
 }
 
-rdm_result rdm_world_set_feedforward(rdm_world* world, int32_t first, const double* efforts, int32_t n) {
+rdm_result rdm_world_set_feedforward(rdm_world* world, int32_t first, const double* efforts, size_t n) {
   return call_inside([&] {
     World& w = change(world);
     if (!w.feedforward())
       fail(Code::kState, "world: its scene has no feed-forward, rdm_scene_set_feedforward");
     need_joints(w, first, n);
     if (n > 0) need(efforts, "efforts");
-    for (int32_t i = 0; i < n; ++i)
+    for (size_t i = 0; i < n; ++i)
       if (!bounded(efforts[i], kFeedforwardBound))
-        fail(Code::kArgument, "efforts[%d] is not finite or beyond %g", i, kFeedforwardBound);
+        fail(Code::kArgument, "efforts[%zu] is not finite or beyond %g", i, kFeedforwardBound);
     std::copy_n(efforts, n, w.feedforward() + first);
   });
 }
 
-rdm_result rdm_world_get_gravity(const rdm_world* world, int32_t robot, double* efforts, int32_t n) {
+rdm_result rdm_world_get_gravity(const rdm_world* world, int32_t robot, double* efforts, size_t n) {
   return call_inside([&] {
     const World& w = look(world);
     need_robot(w, robot);
     const auto links = w.scene().def.articulations[static_cast<size_t>(robot)].links.size();
-    need_numbers(efforts, n, static_cast<int32_t>(links), "efforts");
+    need_numbers(efforts, n, links, "efforts");
     gravity_torques(w, robot, efforts);
   });
 }
 
-rdm_result rdm_world_set_factors(rdm_world* world, const rdm_factor* factors, int32_t count) {
+rdm_result rdm_world_set_factors(rdm_world* world, const rdm_factor* factors, size_t count) {
   return call_inside([&] {
     World& w = change(world);
     if (!w.dynamics()) fail(Code::kState, "world: its scene is not adjustable, rdm_scene_set_adjustable");
-    if (count < 0) fail(Code::kRange, "count: %d is negative", count);
+    if (count > SIZE_MAX / 64) fail(Code::kRange, "count: %zu is too many", count);
     if (count > 0) need(factors, "factors");
     Dynamics& d = w.edit_dynamics();
     const auto materials = static_cast<int64_t>(world->scene->materials.size());
-    for (int32_t i = 0; i < count; ++i) check_reserved(factors[i], "factors");
-    for (int32_t i = 0; i < count; ++i) *place_of(factors[i], materials, &d) = factors[i].factor;
+    for (size_t i = 0; i < count; ++i) check_reserved(factors[i], "factors");
+    for (size_t i = 0; i < count; ++i) *place_of(factors[i], materials, &d) = factors[i].factor;
     w.set_dynamics(d);
   });
 }

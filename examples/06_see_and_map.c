@@ -14,9 +14,9 @@ enum { WORLDS = 2, POINTS = 256 };
 
 /* Numbers of the shapes whose names begin with one of the words, to be left out of a map: what moves by
  * itself. */
-static int shapes_named(const rdm_pool* pool, int num_shapes, const char* const* words, int32_t* out,
-                        int capacity) {
-  int count = 0;
+static size_t shapes_named(const rdm_pool* pool, int num_shapes, const char* const* words, int32_t* out,
+                           size_t capacity) {
+  size_t count = 0;
   for (int i = 0; i < num_shapes; ++i) {
     rdm_shape_info shape = RDM_INIT(rdm_shape_info);
     if (rdm_pool_shape_at(pool, i, &shape) != RDM_OK) break;
@@ -63,7 +63,7 @@ int main(int argc, char** argv) {
   map_config.resolution = 0.04;
   map_config.max_range = 6;
   if (rdm_map_create(&map, &map_config)) goto done;
-  const int num_skip = shapes_named(pool, spec.num_shapes, movable, skip, 128);
+  const size_t num_skip = shapes_named(pool, spec.num_shapes, movable, skip, 128);
   for (int i = 0; i < 3; ++i)
     if (rdm_map_scan(map, pool, 0, cameras[i], 128, 128, skip, num_skip, &dropped)) goto done;
   if (rdm_map_get_info(map, &info)) goto done;

@@ -16,7 +16,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 void PlayerText::read_players() {
   for (size_t i = 0; i < parts_.size(); ++i) add_player(i);
   if (p_.num_actions == 0) top_.bad(RDM_ERROR_FORMAT, 1, "nothing is moved by actions: a [[robot]] is");
-  check(top_, 1, rdm_scene_set_actions(scene_, p_.num_actions, hold_.data(), hold_.data()));
+  check(top_, 1, rdm_scene_set_actions(scene_, hold_.size(), hold_.data(), hold_.data()));
   for (const Table& t : top_.rows("draw")) add_factor(t);
 }
 

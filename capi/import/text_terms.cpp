@@ -206,7 +206,8 @@ void TermText::read_terms() {
     const bool three = row.what == What::kPosition || row.what == What::kVelocity ||
                        row.what == What::kTurning || row.what == What::kTip || row.what == What::kWhere;
     term.entries = three ? 3 : row.what == What::kRotation ? 4 : row.keys & kMany ? term.count : 1;
-    check(t, line_of(t.t), rdm_scene_set_field(scene_, field_name(t).c_str(), term.entries));
+    check(t, line_of(t.t),
+          rdm_scene_set_field(scene_, field_name(t).c_str(), static_cast<size_t>(term.entries)));
     *add_term(t) = term;
     ++p_.views;
   }

@@ -393,7 +393,10 @@ enum {
 static inline RDM_DEPRECATED("rdm_policy_get_columns")
 rdm_result rdm_policy_columns(const rdm_policy *p, int32_t *columns, int32_t capacity,
                               int32_t *count) {
-  return rdm_policy_get_columns(p, columns, capacity, count);
+  size_t n = 0;
+  const rdm_result r = rdm_policy_get_columns(p, columns, (size_t)capacity, count ? &n : NULL);
+  if (r == RDM_OK) *count = (int32_t)n;
+  return r;
 }
 
 static inline RDM_DEPRECATED("rdm_pool_get_sensors")
@@ -404,7 +407,10 @@ rdm_result rdm_pool_sensors(const rdm_pool *p, rdm_sensors *io) {
 static inline RDM_DEPRECATED("rdm_pool_get_hull")
 rdm_result rdm_pool_hull(const rdm_pool *p, int32_t i, float *points, int32_t capacity,
                          int32_t *count) {
-  return rdm_pool_get_hull(p, i, points, capacity, count);
+  size_t n = 0;
+  const rdm_result r = rdm_pool_get_hull(p, i, points, (size_t)capacity, count ? &n : NULL);
+  if (r == RDM_OK) *count = (int32_t)n;
+  return r;
 }
 
 static inline RDM_DEPRECATED("rdm_map_write")
@@ -557,7 +563,10 @@ rdm_result rdm_world_touch(const rdm_world *world, int32_t group, int32_t *pairs
 static inline RDM_DEPRECATED("rdm_world_get_contacts")
 rdm_result rdm_world_contacts(const rdm_world *world, rdm_contact *out, int32_t capacity,
                               int32_t *count) {
-  return rdm_world_get_contacts(world, out, capacity, count);
+  size_t n = 0;
+  const rdm_result r = rdm_world_get_contacts(world, out, (size_t)capacity, count ? &n : NULL);
+  if (r == RDM_OK) *count = (int32_t)n;
+  return r;
 }
 
 static inline RDM_DEPRECATED("rdm_world_get_overlap")
@@ -567,17 +576,17 @@ rdm_result rdm_world_overlap(rdm_world *world, int32_t body, double *depth) {
 
 static inline RDM_DEPRECATED("rdm_world_get_gravity")
 rdm_result rdm_world_gravity(const rdm_world *world, int32_t robot, double *efforts, int32_t n) {
-  return rdm_world_get_gravity(world, robot, efforts, n);
+  return rdm_world_get_gravity(world, robot, efforts, (size_t)n);
 }
 
 static inline RDM_DEPRECATED("rdm_world_set_commands")
 rdm_result rdm_world_command(rdm_world *world, int32_t robot, const double *commands, int32_t n) {
-  return rdm_world_set_commands(world, robot, commands, n);
+  return rdm_world_set_commands(world, robot, commands, (size_t)n);
 }
 
 static inline RDM_DEPRECATED("rdm_world_set_factors")
 rdm_result rdm_world_scale(rdm_world *world, const rdm_factor *factors, int32_t count) {
-  return rdm_world_set_factors(world, factors, count);
+  return rdm_world_set_factors(world, factors, (size_t)count);
 }
 
 static inline RDM_DEPRECATED("rdm_task_create")

@@ -76,7 +76,7 @@ RDM_API rdm_result rdm_map_insert(rdm_map *m, const float origin[3], const float
 /* One scan by a camera of the pool's task: depths of w x h rays of world env. Rays that end on one
  * of the num_skip shapes in skip [num_skip], or meet nothing, are left out. *dropped as above. */
 RDM_API rdm_result rdm_map_scan(rdm_map *m, rdm_pool *p, int32_t env, const char *camera, int32_t w,
-                                int32_t h, const int32_t *skip, int32_t num_skip,
+                                int32_t h, const int32_t *skip, size_t num_skip,
                                 uint64_t *dropped);
 
 /* probability [count] that the voxel of each of points [count][3] is occupied; -1: unknown. */

@@ -38,8 +38,7 @@ class Map {
   uint64_t scan(const Pool& pool, int32_t env, const char* camera, int32_t w, int32_t h,
                 const std::vector<int32_t>& skip = {}) {
     uint64_t dropped = 0;
-    check(rdm_map_scan(get(), pool.get(), env, camera, w, h, skip.data(), static_cast<int32_t>(skip.size()),
-                       &dropped));
+    check(rdm_map_scan(get(), pool.get(), env, camera, w, h, skip.data(), skip.size(), &dropped));
     return dropped;
   }
   // One point [3] each; the C calls take many.

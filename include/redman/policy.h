@@ -83,8 +83,8 @@ RDM_API rdm_result rdm_policy_field_at(const rdm_policy *p, int32_t i, rdm_field
 RDM_API rdm_result rdm_policy_check(const rdm_policy *p, const rdm_spec *spec);
 /* Which entries of a row of obs_dim the policy sees (agent option actor_obs), ascending: writes up
  * to capacity of them to columns [capacity]; *count is how many there are. */
-RDM_API rdm_result rdm_policy_get_columns(const rdm_policy *p, int32_t *columns, int32_t capacity,
-                                          int32_t *count);
+RDM_API rdm_result rdm_policy_get_columns(const rdm_policy *p, int32_t *columns, size_t capacity,
+                                          size_t *count);
 
 #ifdef __cplusplus
 }

@@ -62,17 +62,17 @@ RDM_API rdm_result rdm_pool_sensor_camera_at(const rdm_pool *p, int32_t cloud, i
 
 /* Corners, points [capacity][3], of shape i, an RDM_SHAPE_HULL, in its own frame, m. Writes up to
  * capacity of them; *count is how many there are. */
-RDM_API rdm_result rdm_pool_get_hull(const rdm_pool *p, int32_t i, float *points, int32_t capacity,
-                                     int32_t *count);
+RDM_API rdm_result rdm_pool_get_hull(const rdm_pool *p, int32_t i, float *points, size_t capacity,
+                                     size_t *count);
 
 /* `wanted` of points [count][3] that lie furthest from each other: their numbers, in order of
  * choice, to chosen [wanted]. `start` is the first. Exact. scratch [scratch_bytes]:
  * rdm_sample_scratch bytes or more, aligned in any way; no heap. */
-RDM_API rdm_result rdm_sample_furthest(const float *points, int32_t count, int32_t wanted,
+RDM_API rdm_result rdm_sample_furthest(const float *points, size_t count, size_t wanted,
                                        int32_t start, int32_t *chosen, void *scratch,
                                        size_t scratch_bytes);
-RDM_API size_t rdm_sample_scratch(int32_t count); /* bytes, at any address; 0: count is outside
-                                                   * [1, 2^22] */
+RDM_API size_t rdm_sample_scratch(size_t count); /* bytes, at any address; 0: count is outside
+                                                  * [1, 2^22] */
 
 /* ---- eyes: agents and policies that see points ----------------------------------------------- */
 /* With the agent option `encoder` ("64,128") a PointNet makes features of a cloud for the actor,

@@ -155,8 +155,8 @@ RDM_API rdm_result rdm_scene_add_static(rdm_scene *scene,
 /* For a task whose numbers follow from its options: another count for a field, in the order of
  * rdm_task_def.fields; another count of actions, with hold [count] and mean [count] as in
  * rdm_task_def (NULL: 0). */
-RDM_API rdm_result rdm_scene_set_field(rdm_scene *scene, const char *field, int32_t count);
-RDM_API rdm_result rdm_scene_set_actions(rdm_scene *scene, int32_t count, const float *hold,
+RDM_API rdm_result rdm_scene_set_field(rdm_scene *scene, const char *field, size_t count);
+RDM_API rdm_result rdm_scene_set_actions(rdm_scene *scene, size_t count, const float *hold,
                                          const float *mean);
 /* These look at the scene as a whole, which is complete from the first of them on. */
 RDM_API rdm_result rdm_scene_find(rdm_scene *scene, int32_t part, const char *name,
@@ -213,7 +213,7 @@ RDM_API rdm_result rdm_world_get_touch(const rdm_world *world, int32_t group, in
 /* Contacts of the last substep to out [capacity], of things asleep as they fell asleep; *count is
  * how many there are. */
 RDM_API rdm_result rdm_world_get_contacts(const rdm_world *world, rdm_contact *out,
-                                          int32_t capacity, int32_t *count);
+                                          size_t capacity, size_t *count);
 /* By *depth (m) a body at its present place is within something that it may touch; 0: it is
  * clear. */
 RDM_API rdm_result rdm_world_get_overlap(rdm_world *world, int32_t body, double *depth);
@@ -223,21 +223,21 @@ RDM_API rdm_result rdm_world_set_body(rdm_world *world, int32_t body, const rdm_
 RDM_API rdm_result rdm_world_set_base(rdm_world *world, int32_t robot,
                                       const rdm_motion *motion); /* STATE: it is fixed */
 RDM_API rdm_result rdm_world_set_joints(rdm_world *world, int32_t robot, const double *q,
-                                        const double *qd, int32_t n); /* all n */
+                                        const double *qd, size_t n); /* all n */
 /* What drives go for: targets [n] (rad, m) of the joints from `first` on; or commands [n]
  * in [-1, 1] of all n commands of a robot, which become targets as its description says: ranges or
  * curves, no faster than its joints' velocity. */
 RDM_API rdm_result rdm_world_set_targets(rdm_world *world, int32_t first, const double *targets,
-                                         int32_t n);
+                                         size_t n);
 RDM_API rdm_result rdm_world_set_commands(rdm_world *world, int32_t robot, const double *commands,
-                                          int32_t n);
+                                          size_t n);
 /* Adds efforts [n] (N m, N) to the springs of the drives from `first` on, until they are set again;
  * STATE unless the scene has them. rdm_world_get_gravity gives those that hold a robot of n joints
  * against gravity where it is. */
 RDM_API rdm_result rdm_world_set_feedforward(rdm_world *world, int32_t first, const double *efforts,
-                                             int32_t n);
+                                             size_t n);
 RDM_API rdm_result rdm_world_get_gravity(const rdm_world *world, int32_t robot, double *efforts,
-                                         int32_t n);
+                                         size_t n);
 enum rdm_scale { /* what a factor is on, and in brackets its bounds */
   RDM_SCALE_GRAVITY = 0,        /* [-10, 10] */
   RDM_SCALE_LINK_MASS = 1,      /* [0.001, 1000], moments with it; index: link */
@@ -260,8 +260,7 @@ typedef struct rdm_factor { /* frozen layout: on a constant of the scene, in one
 } rdm_factor;
 /* Lays factors [count] over those that the world has, all 1 at the start of an episode; reset may
  * draw them. All are taken or none. STATE unless the scene is adjustable. */
-RDM_API rdm_result rdm_world_set_factors(rdm_world *world, const rdm_factor *factors,
-                                         int32_t count);
+RDM_API rdm_result rdm_world_set_factors(rdm_world *world, const rdm_factor *factors, size_t count);
 /* Pushes during the next step, world axes: force [3] (N) at the centre of mass and torque [3] (N
  * m); of a link at `point` [3]. */
 RDM_API rdm_result rdm_world_push_body(rdm_world *world, int32_t body, const double force[3],
@@ -392,7 +391,7 @@ RDM_API rdm_result rdm_task_destroy(int32_t task);
  * NULL: never, is asked before every step of its worlds, and given `user`; CANCELLED where it says
  * so, nothing is left behind. */
 RDM_API rdm_result rdm_task_check(const char *task, const char *settings, rdm_stop stop, void *user,
-                                  char *error, int32_t error_size);
+                                  char *error, size_t error_size);
 
 #ifdef __cplusplus
 }

@@ -59,14 +59,14 @@ TEST_F(Look, AHullShowsItsCorners) {
   EXPECT_EQ(s.kind, RDM_SHAPE_HULL);
   EXPECT_NEAR(s.size[0], 0.045, 1e-6);  // the centre of mass is at a quarter
   float corners[12] = {}, sum[3] = {};
-  int32_t count = 0;
+  size_t count = 0;
   ASSERT_EQ(rdm_pool_get_hull(p, i, corners, 4, &count), RDM_OK);
-  EXPECT_EQ(count, 4);
+  EXPECT_EQ(count, 4u);
   for (int k = 0; k < 12; ++k) sum[k % 3] += corners[k];
   for (const float x : sum) EXPECT_NEAR(x, 0, 1e-6);
   EXPECT_EQ(rdm_pool_get_hull(p, i, nullptr, 0, &count), RDM_OK);
   EXPECT_EQ(rdm_pool_get_hull(p, i, nullptr, 1, &count), RDM_ERROR_ARGUMENT);
-  EXPECT_EQ(rdm_pool_get_hull(p, i, corners, -1, &count), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_pool_get_hull(p, i, corners, static_cast<size_t>(-1), &count), RDM_ERROR_RANGE);
   EXPECT_EQ(rdm_pool_get_hull(p, i, corners, 4, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_pool_get_hull(p, spec.num_shapes, corners, 4, &count), RDM_ERROR_RANGE);
   EXPECT_EQ(rdm_pool_get_hull(pool, object(), corners, 4, &count), RDM_ERROR_ARGUMENT);

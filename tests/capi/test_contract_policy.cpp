@@ -98,7 +98,8 @@ TEST(PolicyInMemory, TakesNothingFromHeapOrHooks) {
   size_t needed = 0;
   float action[2], mean[2];
   unsigned char scratch[1024];
-  int32_t columns[3], count;
+  int32_t columns[3];
+  size_t count;
   rdm_tensor t;
   rdm_policy_info info = RDM_INIT(rdm_policy_info);
   Bytes memory(1 << 16);

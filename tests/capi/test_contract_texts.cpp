@@ -30,7 +30,6 @@ TEST(ContractTexts, OfAPool) {
   char text[RDM_TEXT_SIZE];
   unsigned char byte = 0;
   const char* key = nullptr;
-  int32_t count = 0;
   rdm_shape_info shape = RDM_INIT(rdm_shape_info);
   rdm_field_info field = RDM_INIT(rdm_field_info);
   rdm_camera_info camera = RDM_INIT(rdm_camera_info);
@@ -59,7 +58,7 @@ TEST(ContractTexts, OfAPool) {
           {"get_stats", [&] { return rdm_pool_get_stats(p, nullptr); }},
           {"sensors", [&] { return rdm_pool_get_sensors(p, nullptr); }},
           {"sensor_camera", [&] { return rdm_pool_sensor_camera_at(p, 0, 5, &camera); }},
-          {"hull", [&] { return rdm_pool_get_hull(p, -3, &number, 1, &count); }},
+          {"hull", [&] { return rdm_pool_get_hull(p, -3, &number, 1, &n); }},
           {"agent_config_for_pool", [&] { return rdm_agent_config_for_pool(nullptr, p); }},
       },
       [&] { return rdm_pool_error(p); });

@@ -136,7 +136,7 @@ const std::vector<Call> kPoolCalls = {
     CALL(rdm_planner_act(good.planner, POOL, 0, g_floats, nullptr)),
     CALL(rdm_pool_get_sensors(POOL, sized<rdm_sensors>())),
     CALL(rdm_pool_sensor_camera_at(POOL, 0, 0, sized<rdm_camera_info>())),
-    CALL(rdm_pool_get_hull(POOL, 0, nullptr, 0, &g_number)),
+    CALL(rdm_pool_get_hull(POOL, 0, nullptr, 0, &g_size)),
     CALL(rdm_agent_config_for_pool(sized<rdm_agent_config>(), POOL)),
     CALL(rdm_agent_rollout(good.agent, POOL, nullptr)),
     CALL(rdm_map_scan(good.map, POOL, 0, "front", 8, 8, nullptr, 0, nullptr)),

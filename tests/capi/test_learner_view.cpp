@@ -40,8 +40,8 @@ std::vector<float> tensor(const rdm_policy* p, const char* name, int32_t rows, i
 }
 
 // Of tasks with hands: nothing but hands and goals.
-void expect_no_object(const rdm_pool* p, const rdm_policy* policy, int32_t count) {
-  std::vector<int32_t> columns(static_cast<size_t>(count));
+void expect_no_object(const rdm_pool* p, const rdm_policy* policy, size_t count) {
+  std::vector<int32_t> columns(count);
   ASSERT_EQ(rdm_policy_get_columns(policy, columns.data(), count, &count), RDM_OK);
   rdm_field_info f = RDM_INIT(rdm_field_info);
   for (int i = 0; rdm_pool_field_at(p, i, &f) == RDM_OK; ++i) {
@@ -73,14 +73,14 @@ TEST(LearnerView, APolicyOfAPartTakesWholeRows) {
       for (int32_t k = 0; k < f.count; ++k) wanted.push_back(f.offset + k);
   }
   std::vector<int32_t> columns(static_cast<size_t>(spec.obs_dim), -1);
-  int32_t count = 0;
+  size_t count = 0;
   ASSERT_EQ(rdm_policy_get_columns(policy, nullptr, 0, &count), RDM_OK);
-  EXPECT_EQ(count, static_cast<int32_t>(wanted.size()));
+  EXPECT_EQ(count, wanted.size());
   ASSERT_EQ(rdm_policy_get_columns(policy, columns.data(), count, &count), RDM_OK);
   columns.resize(wanted.size());
   EXPECT_EQ(columns, wanted);
   EXPECT_EQ(rdm_policy_get_columns(policy, nullptr, 1, &count), RDM_ERROR_ARGUMENT);
-  EXPECT_EQ(rdm_policy_get_columns(policy, columns.data(), -1, &count), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_policy_get_columns(policy, columns.data(), static_cast<size_t>(-1), &count), RDM_ERROR_RANGE);
   EXPECT_EQ(rdm_policy_get_columns(policy, columns.data(), 1, nullptr), RDM_ERROR_ARGUMENT);
 
   // tensors are over whole rows: who computes with them need not know of the part
@@ -134,7 +134,7 @@ TEST(LearnerView, APolicyOfAPartTakesWholeRows) {
   a = agent_of(p, "hidden=16\nhorizon=16\nactor_obs=state");
   policy = policy_of(a);
   ASSERT_EQ(rdm_policy_get_columns(policy, nullptr, 0, &count), RDM_OK);
-  EXPECT_EQ(count, spec.obs_dim);
+  EXPECT_EQ(count, static_cast<size_t>(spec.obs_dim));
   rdm_policy_destroy(policy);
   rdm_agent_destroy(a);
   rdm_pool_destroy(p);
@@ -151,7 +151,7 @@ TEST(LearnerView, PresetsFitEveryTaskWithARobot) {
     bool joints = false;
     for (int i = 0; rdm_pool_field_at(p, i, &f) == RDM_OK; ++i)
       joints |= std::string(f.name) == "joint_position";
-    int32_t counts[4] = {};
+    size_t counts[4] = {};
     const char* presets[] = {"state", "touch", "proprioception", "vision"};
     for (int k = 0; k < 4; ++k) {
       const bool known = k == 0 || hands || sensors || joints;
@@ -170,7 +170,7 @@ TEST(LearnerView, PresetsFitEveryTaskWithARobot) {
       EXPECT_GE(counts[3], counts[1]);
       EXPECT_LE(counts[3], counts[1] + 7);  // a goal's pose, where there is one
       EXPECT_LT(counts[3], counts[0]);
-      EXPECT_EQ((counts[1] - counts[2]) % 30, 0);  // six numbers of each of five fingertips
+      EXPECT_EQ((counts[1] - counts[2]) % 30, 0u);  // six numbers of each of five fingertips
     }
     rdm_pool_destroy(p);
   }

@@ -83,8 +83,7 @@ TEST(Map, ScansOfATasksCamerasShowItsShapes) {
   std::vector<int32_t> all;
   rdm_shape_info s = RDM_INIT(rdm_shape_info);
   for (int32_t i = 0; rdm_pool_shape_at(p, i, &s) == RDM_OK; ++i) all.push_back(i);
-  ASSERT_EQ(rdm_map_scan(map.m, p, 0, "top", 80, 60, all.data(), static_cast<int32_t>(all.size()), nullptr),
-            RDM_OK);
+  ASSERT_EQ(rdm_map_scan(map.m, p, 0, "top", 80, 60, all.data(), all.size(), nullptr), RDM_OK);
   ASSERT_EQ(rdm_map_get_info(map.m, &info), RDM_OK);
   EXPECT_EQ(info.nodes, 0u);
   rdm_pool_destroy(p);
@@ -268,7 +267,8 @@ TEST(Map, BadScansAreRefused) {
   EXPECT_EQ(rdm_map_scan(map.m, p, 0, nullptr, 8, 8, nullptr, 0, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_map_scan(map.m, p, 0, "top", 0, 8, nullptr, 0, nullptr), RDM_ERROR_RANGE);
   EXPECT_EQ(rdm_map_scan(map.m, p, 0, "top", 8, 8, nullptr, 1, nullptr), RDM_ERROR_ARGUMENT);
-  EXPECT_EQ(rdm_map_scan(map.m, p, 0, "top", 8, 8, nullptr, -1, nullptr), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_map_scan(map.m, p, 0, "top", 8, 8, nullptr, static_cast<size_t>(-1), nullptr),
+            RDM_ERROR_RANGE);
   rdm_pool_destroy(p);
 }
 

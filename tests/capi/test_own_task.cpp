@@ -249,8 +249,8 @@ TEST(OwnTask, CountsFollowFromOptions) {
     double n = 0;
     rdm_result r = rdm_scene_get_number(scene, "entries", &n);
     const float mean[5] = {0.5f, 0.5f, 0.5f, 0.5f, 0.5f};
-    if (r == RDM_OK) r = rdm_scene_set_field(scene, "action", static_cast<int32_t>(n));
-    if (r == RDM_OK) r = rdm_scene_set_actions(scene, static_cast<int32_t>(n), nullptr, mean);
+    if (r == RDM_OK) r = rdm_scene_set_field(scene, "action", static_cast<size_t>(n));
+    if (r == RDM_OK) r = rdm_scene_set_actions(scene, static_cast<size_t>(n), nullptr, mean);
     return r != RDM_OK ? r : ball_build(user, scene, instance);
   };
   const Registered made(t.def);

@@ -306,6 +306,8 @@ TEST(OwnTaskErrors, OfScenes) {
        after([](auto* s) { return rdm_scene_set_field(s, "two", 2); })},
       {RDM_ERROR_RANGE, "count: 0 is outside [1, 1024]",
        after([](auto* s) { return rdm_scene_set_actions(s, 0, nullptr, nullptr); })},
+      {RDM_ERROR_RANGE, "count: -1 is outside [1, 1024]",
+       after([](auto* s) { return rdm_scene_set_actions(s, static_cast<size_t>(-1), nullptr, nullptr); })},
       {RDM_ERROR_ARGUMENT, "option engine is a text: rdm_scene_get_text has it", after([](auto* s) {
          double x;
          return rdm_scene_get_number(s, "engine", &x);
@@ -397,10 +399,10 @@ TEST(OwnTaskErrors, OfCallsInAWorld) {
        [](auto* w) { return rdm_world_push_body(w, 0, nan, zero); }},
       {RDM_ERROR_ARGUMENT, "point is not finite",
        [](auto* w) { return rdm_world_push_link(w, 0, zero, nan); }},
-      {RDM_ERROR_RANGE, "capacity: -1 is negative",
+      {RDM_ERROR_RANGE, "capacity: ",
        [](auto* w) {
-         int32_t n;
-         return rdm_world_get_contacts(w, nullptr, -1, &n);
+         size_t n;
+         return rdm_world_get_contacts(w, nullptr, static_cast<size_t>(-1), &n);
        }},
       {RDM_ERROR_ARGUMENT, "io.struct_size: 0 is less than 48",
        [](auto* w) {

@@ -307,9 +307,9 @@ TEST(Points, ARolloutSeesWhatThePoolShows) {
   EXPECT_EQ(e.epoch, 1);
   EXPECT_GT(e.env_steps, 0);
   const redman::Policy p(a.policy());
-  int32_t columns = 0;
+  size_t columns = 0;
   EXPECT_EQ(rdm_policy_get_columns(p.get(), nullptr, 0, &columns), RDM_OK);
-  EXPECT_EQ(columns, 381);
+  EXPECT_EQ(columns, 381u);
 
   redman::Agent b = with((common + "encoder=8,16\nencoder_points=65").c_str());
   EXPECT_EQ(rdm_agent_rollout(b.get(), pool.get(), nullptr), RDM_ERROR_ARGUMENT);

@@ -11,7 +11,8 @@ import sys
 
 HANDLES = {"rdm_pool", "rdm_agent", "rdm_policy", "rdm_actor", "rdm_recording", "rdm_planner", "rdm_map", "rdm_scene", "rdm_world"}
 INTEGERS = {"int32_t", "uint32_t", "int64_t", "uint64_t", "size_t"}
-LENGTHS = {"capacity", "scratch_bytes", "note_size", "num_skip", "wanted"}  # arguments that say how long another is
+LENGTHS = {"capacity", "scratch_bytes", "note_size", "num_skip", "wanted", "error_size"}  # arguments that say how long another is
+NOT_COUNTED = {"rows", "w", "h"}  # lengths that are int32_t: of rows and pictures
 SHAPE = r"((?:\[[^\]\[]+\])+)"
 WORD = re.compile(r"[A-Za-z_]\w*")
 
@@ -138,6 +139,10 @@ def main(root):
         plain = {Header.name_of(a) for a in arguments if "*" not in a}
         for name in sorted(plain & LENGTHS - sized):
             wrong.append(f"{function}: no array has the shape [{name}]")
+        for argument in arguments:
+            name = Header.name_of(argument)
+            if name in plain & (LENGTHS | sized) - NOT_COUNTED and split(argument)[0] != "size_t":
+                wrong.append(f"{function}: `{argument}` is no size_t")
     for name, body in header.enums:
         if not name:
             wrong.append(f"an enum has no name: {' '.join(body.split())[:60]}")

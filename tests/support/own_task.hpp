@@ -143,7 +143,7 @@ inline rdm_result ball_control(void* user, const void* instance, rdm_world* worl
     const double nan = std::numeric_limits<double>::quiet_NaN();
     return rdm_world_set_targets(world, ids->rail, &nan, 1);
   }
-  int32_t contacts = 0;
+  size_t contacts = 0;
   if (u->fault == Fault::kControlTouches) rdm_world_get_contacts(world, nullptr, 0, &contacts);
   if (u->fault == Fault::kStateElsewhere) {
     command += u->hidden;
@@ -151,8 +151,8 @@ inline rdm_result ball_control(void* user, const void* instance, rdm_world* worl
   }
   // draws within the episode belong to the state
   const double jitter = 0.01 * rdm_random_normal(&s->draws);
-  const double force[3] = {ids->push * static_cast<double>(action[1]) + jitter + contacts, 0, 0},
-               none[3] = {0, 0, 0};
+  const double pushed = ids->push * static_cast<double>(action[1]) + jitter;
+  const double force[3] = {pushed + static_cast<double>(contacts), 0, 0}, none[3] = {0, 0, 0};
   const double blast[3] = {1e308, 0, 0};
   rdm_result r = rdm_world_set_commands(world, ids->paddle, &command, 1);
   if (r == RDM_OK) r = rdm_world_push_body(world, ids->ball, force, none);

@@ -292,9 +292,9 @@ void Lab::look(const rdm_world* world) {
   q.assign(j.q, j.q + joints_);
   qd.assign(j.qd, j.qd + joints_);
   torque.assign(j.torque, j.torque + joints_);
-  int32_t count = 0;
+  size_t count = 0;
   check(rdm_world_get_contacts(world, nullptr, 0, &count));
-  contacts.resize(static_cast<size_t>(count));
+  contacts.resize(count);
   check(rdm_world_get_contacts(world, contacts.data(), count, &count));
 }
 

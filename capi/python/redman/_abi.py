@@ -3565,11 +3565,11 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"p": c_void_p, "spec": POINTER(rdm_spec)},
         {}, False,
         """OK, or VERSION_MISMATCH with a text that says which field of the spec differs; where rows are of
-        another layout, the first part that differs, if the policy says its parts and a pool of the spec's
-        layout lives.
+        another layout, the first part that differs, if the policy says its parts and a pool of the
+        spec's layout lives.
         """),
     "rdm_policy_get_columns": Function(
-        c_int32, {"p": c_void_p, "columns": c_void_p, "capacity": c_int32, "count": c_void_p},
+        c_int32, {"p": c_void_p, "columns": c_void_p, "capacity": c_size_t, "count": c_void_p},
         {"columns": Rows("int32", ("capacity",))}, False,
         """Which entries of a row of obs_dim the policy sees (agent option actor_obs), ascending: writes up
         to capacity of them to columns [capacity]; *count is how many there are.
@@ -4100,20 +4100,20 @@ FUNCTIONS: dict[str, Function] = {
         1). RANGE ends.
         """),
     "rdm_pool_get_hull": Function(
-        c_int32, {"p": c_void_p, "i": c_int32, "points": c_void_p, "capacity": c_int32, "count": c_void_p},
+        c_int32, {"p": c_void_p, "i": c_int32, "points": c_void_p, "capacity": c_size_t, "count": c_void_p},
         {"points": Rows("float32", ("capacity", "3"))}, True,
         """Corners, points [capacity][3], of shape i, an RDM_SHAPE_HULL, in its own frame, m. Writes up to
         capacity of them; *count is how many there are.
         """),
     "rdm_sample_furthest": Function(
-        c_int32, {"points": c_void_p, "count": c_int32, "wanted": c_int32, "start": c_int32, "chosen": c_void_p, "scratch": c_void_p, "scratch_bytes": c_size_t},
+        c_int32, {"points": c_void_p, "count": c_size_t, "wanted": c_size_t, "start": c_int32, "chosen": c_void_p, "scratch": c_void_p, "scratch_bytes": c_size_t},
         {"points": Rows("float32", ("count", "3")), "chosen": Rows("int32", ("wanted",))}, True,
         """`wanted` of points [count][3] that lie furthest from each other: their numbers, in order of
         choice, to chosen [wanted]. `start` is the first. Exact. scratch [scratch_bytes]:
         rdm_sample_scratch bytes or more, aligned in any way; no heap.
         """),
     "rdm_sample_scratch": Function(
-        c_size_t, {"count": c_int32},
+        c_size_t, {"count": c_size_t},
         {}, True,
         """bytes, at any address; 0: count is outside
         [1, 2^22]
@@ -4183,7 +4183,7 @@ FUNCTIONS: dict[str, Function] = {
         exist go on being updated.
         """),
     "rdm_map_scan": Function(
-        c_int32, {"m": c_void_p, "p": c_void_p, "env": c_int32, "camera": c_char_p, "w": c_int32, "h": c_int32, "skip": c_void_p, "num_skip": c_int32, "dropped": c_void_p},
+        c_int32, {"m": c_void_p, "p": c_void_p, "env": c_int32, "camera": c_char_p, "w": c_int32, "h": c_int32, "skip": c_void_p, "num_skip": c_size_t, "dropped": c_void_p},
         {"skip": Rows("int32", ("num_skip",))}, True,
         """One scan by a camera of the pool's task: depths of w x h rays of world env. Rays that end on one
         of the num_skip shapes in skip [num_skip], or meet nothing, are left out. *dropped as above.
@@ -4338,8 +4338,8 @@ FUNCTIONS: dict[str, Function] = {
         action [action_dim]. The pool is only read; it has the task and options of the one that the
         planner was made for, else ARGUMENT. io may be NULL. STATE where no episode runs. No heap.
         Where config.stop says so it plans no further: action, plan and what follows have the bytes of a
-        planner whose option iterations is io.iterations. Before the first iteration was finished the plan
-        of before is followed, shifted by a step; without one, the policy's rollout so far or
+        planner whose option iterations is io.iterations. Before the first iteration was finished the
+        plan of before is followed, shifted by a step; without one, the policy's rollout so far or
         rdm_pool_get_initial_mean; and the next call plans. CANCELLED after rdm_planner_cancel: as after
         every error, plan, noise, action and io are as before.
         """),
@@ -4585,8 +4585,8 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"robot": c_int32, "q": c_void_p, "links": c_void_p, "flange": c_void_p, "tips": c_void_p, "palm": c_void_p},
         {"q": Rows("float64", ("num_links",)), "links": Rows("float64", ("num_links", "7")), "flange": Rows("float64", ("7",)), "tips": Rows("float64", ("num_fingers", "3")), "palm": Rows("float64", ("7",))}, True,
         """For joints q [num_links], in the root frame: poses of the links to links [num_links]. *flange,
-        tips [num_fingers][3] and *palm (origin at hold_p, y into the palm, z as the fingers point) may be
-        NULL.
+        tips [num_fingers][3] and *palm (origin at hold_p, y into the palm, z as the fingers point) may
+        be NULL.
         """),
     "rdm_robot_reach": Function(
         c_int32, {"robot": c_int32, "flange": c_void_p, "q": c_void_p, "found": c_void_p},
@@ -4717,14 +4717,14 @@ FUNCTIONS: dict[str, Function] = {
         {}, True,
         """stands still"""),
     "rdm_scene_set_field": Function(
-        c_int32, {"scene": c_void_p, "field": c_char_p, "count": c_int32},
+        c_int32, {"scene": c_void_p, "field": c_char_p, "count": c_size_t},
         {}, True,
         """For a task whose numbers follow from its options: another count for a field, in the order of
         rdm_task_def.fields; another count of actions, with hold [count] and mean [count] as in
         rdm_task_def (NULL: 0).
         """),
     "rdm_scene_set_actions": Function(
-        c_int32, {"scene": c_void_p, "count": c_int32, "hold": c_void_p, "mean": c_void_p},
+        c_int32, {"scene": c_void_p, "count": c_size_t, "hold": c_void_p, "mean": c_void_p},
         {"hold": Rows("float32", ("count",)), "mean": Rows("float32", ("count",))}, True,
         """For a task whose numbers follow from its options: another count for a field, in the order of
         rdm_task_def.fields; another count of actions, with hold [count] and mean [count] as in
@@ -4791,7 +4791,7 @@ FUNCTIONS: dict[str, Function] = {
         group's contact forces in its last substep. Either may be NULL.
         """),
     "rdm_world_get_contacts": Function(
-        c_int32, {"world": c_void_p, "out": POINTER(rdm_contact), "capacity": c_int32, "count": c_void_p},
+        c_int32, {"world": c_void_p, "out": POINTER(rdm_contact), "capacity": c_size_t, "count": c_void_p},
         {}, True,
         """Contacts of the last substep to out [capacity], of things asleep as they fell asleep; *count is
         how many there are.
@@ -4813,39 +4813,39 @@ FUNCTIONS: dict[str, Function] = {
         {}, True,
         """STATE: it is fixed"""),
     "rdm_world_set_joints": Function(
-        c_int32, {"world": c_void_p, "robot": c_int32, "q": c_void_p, "qd": c_void_p, "n": c_int32},
+        c_int32, {"world": c_void_p, "robot": c_int32, "q": c_void_p, "qd": c_void_p, "n": c_size_t},
         {"q": Rows("float64", ("n",)), "qd": Rows("float64", ("n",))}, True,
         """all n"""),
     "rdm_world_set_targets": Function(
-        c_int32, {"world": c_void_p, "first": c_int32, "targets": c_void_p, "n": c_int32},
+        c_int32, {"world": c_void_p, "first": c_int32, "targets": c_void_p, "n": c_size_t},
         {"targets": Rows("float64", ("n",))}, True,
         """What drives go for: targets [n] (rad, m) of the joints from `first` on; or commands [n]
         in [-1, 1] of all n commands of a robot, which become targets as its description says: ranges or
         curves, no faster than its joints' velocity.
         """),
     "rdm_world_set_commands": Function(
-        c_int32, {"world": c_void_p, "robot": c_int32, "commands": c_void_p, "n": c_int32},
+        c_int32, {"world": c_void_p, "robot": c_int32, "commands": c_void_p, "n": c_size_t},
         {"commands": Rows("float64", ("n",))}, True,
         """What drives go for: targets [n] (rad, m) of the joints from `first` on; or commands [n]
         in [-1, 1] of all n commands of a robot, which become targets as its description says: ranges or
         curves, no faster than its joints' velocity.
         """),
     "rdm_world_set_feedforward": Function(
-        c_int32, {"world": c_void_p, "first": c_int32, "efforts": c_void_p, "n": c_int32},
+        c_int32, {"world": c_void_p, "first": c_int32, "efforts": c_void_p, "n": c_size_t},
         {"efforts": Rows("float64", ("n",))}, True,
         """Adds efforts [n] (N m, N) to the springs of the drives from `first` on, until they are set again;
         STATE unless the scene has them. rdm_world_get_gravity gives those that hold a robot of n joints
         against gravity where it is.
         """),
     "rdm_world_get_gravity": Function(
-        c_int32, {"world": c_void_p, "robot": c_int32, "efforts": c_void_p, "n": c_int32},
+        c_int32, {"world": c_void_p, "robot": c_int32, "efforts": c_void_p, "n": c_size_t},
         {"efforts": Rows("float64", ("n",))}, True,
         """Adds efforts [n] (N m, N) to the springs of the drives from `first` on, until they are set again;
         STATE unless the scene has them. rdm_world_get_gravity gives those that hold a robot of n joints
         against gravity where it is.
         """),
     "rdm_world_set_factors": Function(
-        c_int32, {"world": c_void_p, "factors": POINTER(rdm_factor), "count": c_int32},
+        c_int32, {"world": c_void_p, "factors": POINTER(rdm_factor), "count": c_size_t},
         {}, True,
         """Lays factors [count] over those that the world has, all 1 at the start of an episode; reset may
         draw them. All are taken or none. STATE unless the scene is adjustable.
@@ -4906,7 +4906,7 @@ FUNCTIONS: dict[str, Function] = {
         {}, True,
         """Pools that have it keep it. ARGUMENT for the library's own."""),
     "rdm_task_check": Function(
-        c_int32, {"task": c_char_p, "settings": c_char_p, "stop": rdm_stop, "user": c_void_p, "error": c_void_p, "error_size": c_int32},
+        c_int32, {"task": c_char_p, "settings": c_char_p, "stop": rdm_stop, "user": c_void_p, "error": c_void_p, "error_size": c_size_t},
         {}, True,
         """Tries what a task promises, any task: the same bytes for the same seed, any threads and after
         save and restore, rows within their fields and bounds, costs of 0 or more, nothing written past a

@@ -219,7 +219,7 @@ class Policy(Hinted):
     def columns(self) -> Array:
         """Which entries of a row the policy sees, ascending: all, but for option actor_obs of its agent."""
         out = np.empty(self.info.obs_dim, np.int32)
-        count = ctypes.c_int32()
+        count = ctypes.c_size_t()
         check(lib.rdm_policy_get_columns(self._open(), out.ctypes.data, len(out), ctypes.byref(count)))
         return out[:count.value]
 

@@ -407,7 +407,7 @@ class Pool(Hinted):
 
     def hull(self, shape: int) -> FloatArray:
         """[count][3] corners of a shape that is a hull, in its own frame, m."""
-        count = c_int32()
+        count = c_size_t()
         self._check(lib.rdm_pool_get_hull(self._open(), int32(shape, "shape"), None, 0, byref(count)))
         out = np.empty((count.value, 3), np.float32)
         self._check(lib.rdm_pool_get_hull(self._p, shape, out.ctypes.data, len(out), byref(count)))

@@ -20,9 +20,9 @@ constexpr const char* kPresetNames[] = {"state", "vision", "touch", "propriocept
 }  // namespace
 
 std::vector<int32_t> policy_columns(const rdm_policy* policy) {
-  int32_t count = 0;
+  size_t count = 0;
   redman::check(rdm_policy_get_columns(policy, nullptr, 0, &count));
-  std::vector<int32_t> columns(static_cast<size_t>(count));
+  std::vector<int32_t> columns(count);
   redman::check(rdm_policy_get_columns(policy, columns.data(), count, &count));
   return columns;
 }

@@ -20,9 +20,9 @@ Body body_at(const redman::Pool& pool, int32_t index) {
   for (int k = 0; k < 3; ++k) body.size[k] = static_cast<float>(shape.size[k]);
   std::copy_n(shape.color, 3, body.color);
   if (shape.kind != RDM_SHAPE_HULL) return body;
-  int32_t count = 0;
+  size_t count = 0;
   redman::check(rdm_pool_get_hull(pool.get(), index, nullptr, 0, &count));
-  body.corners.resize(static_cast<size_t>(count) * 3);
+  body.corners.resize(3 * count);
   redman::check(rdm_pool_get_hull(pool.get(), index, body.corners.data(), count, &count));
   return body;
 }
