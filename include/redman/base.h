@@ -102,9 +102,9 @@ RDM_API rdm_result rdm_build_info(rdm_build *io); /* fills io; strings are stati
 
 /* ---- host hooks ------------------------------------------------------------------------------ */
 typedef void (*rdm_body)(void *context, int32_t index); /* one piece of parallel work */
-/* Whether a call that takes long is to end now: not 0. Asked in that call's thread, at places that do
- * not depend on the number of threads. `steps`: the control steps that worlds have taken for it so
- * far, by which a host that has no clock can bound it. */
+/* Whether a call that takes long is to end now: not 0. Asked in that call's thread, at places that
+ * do not depend on the number of threads. `steps`: the control steps that worlds have taken for it
+ * so far, by which a host that has no clock can bound it. */
 typedef int32_t (*rdm_stop)(void *user, int64_t steps);
 typedef struct rdm_host { /* what a host gives in the place of the C library and of our threads */
   uint32_t struct_size;   /* bytes */

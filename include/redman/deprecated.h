@@ -48,8 +48,8 @@ typedef struct rdm_shape {   /* frozen layout: what the scene is made of, the sa
   uint8_t color[4];          /* red, green, blue, 255 */
   int32_t fixed;             /* flag: never moves */
 } rdm_shape;
-/* pose [num_shapes][7]: position (m), quaternion (x, y, z, w); world frame of that world. A function
- * of the library, for there is nowhere here to put the doubles of rdm_pool_get_poses. */
+/* pose [num_shapes][7]: position (m), quaternion (x, y, z, w); world frame of that world. A
+ * function of the library, for there is nowhere here to put the doubles of rdm_pool_get_poses. */
 RDM_API RDM_DEPRECATED("rdm_pool_get_poses")
 rdm_result rdm_pool_poses(const rdm_pool *p, int32_t env, float *pose);
 

@@ -90,8 +90,8 @@ RDM_API rdm_result rdm_actor_read_state(rdm_actor *actor, const void *bytes, siz
  *   for (...) { rdm_planner_act(planner, pool, 0, b.action, NULL);  rdm_pool_step(pool); }
  *   rdm_planner_destroy(planner);
  *
- * A control loop that has little time gives `stop`: the action is then the best of what was finished.
- * The library reads no clock; what a call gives follows from the answers alone.
+ * A control loop that has little time gives `stop`: the action is then the best of what was
+ * finished. The library reads no clock; what a call gives follows from the answers alone.
  *
  *   static int32_t late(void *until, int64_t steps) { return now_ns() > *(int64_t *)until; }
  *   c.stop = late;  c.user = &until;  ... until = now_ns() + 2000000;  rdm_planner_act(...) ...
@@ -174,8 +174,8 @@ RDM_API rdm_result rdm_planner_get_settings(const rdm_planner *planner, char *te
  * action [action_dim]. The pool is only read; it has the task and options of the one that the
  * planner was made for, else ARGUMENT. io may be NULL. STATE where no episode runs. No heap.
  * Where config.stop says so it plans no further: action, plan and what follows have the bytes of a
- * planner whose option iterations is io.iterations. Before the first iteration was finished the plan
- * of before is followed, shifted by a step; without one, the policy's rollout so far or
+ * planner whose option iterations is io.iterations. Before the first iteration was finished the
+ * plan of before is followed, shifted by a step; without one, the policy's rollout so far or
  * rdm_pool_get_initial_mean; and the next call plans. CANCELLED after rdm_planner_cancel: as after
  * every error, plan, noise, action and io are as before. */
 RDM_API rdm_result rdm_planner_act(rdm_planner *planner, const rdm_pool *pool, int32_t env,

@@ -78,8 +78,8 @@ RDM_API rdm_result rdm_policy_get_tensor(const rdm_policy *p, const char *name, 
 /* Part i of a row, whose names are the policy's; bounds are unknown. RANGE ends the list. */
 RDM_API rdm_result rdm_policy_field_at(const rdm_policy *p, int32_t i, rdm_field_info *io);
 /* OK, or VERSION_MISMATCH with a text that says which field of the spec differs; where rows are of
- * another layout, the first part that differs, if the policy says its parts and a pool of the spec's
- * layout lives. */
+ * another layout, the first part that differs, if the policy says its parts and a pool of the
+ * spec's layout lives. */
 RDM_API rdm_result rdm_policy_check(const rdm_policy *p, const rdm_spec *spec);
 /* Which entries of a row of obs_dim the policy sees (agent option actor_obs), ascending: writes up
  * to capacity of them to columns [capacity]; *count is how many there are. */

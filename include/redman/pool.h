@@ -160,9 +160,10 @@ RDM_API rdm_result rdm_pool_config_spec(const rdm_pool_config *c, rdm_spec *io);
  * library, an estimate. Either may be NULL. No hook is called. The task must be made to know them:
  * that is done in memory of the C library, which has it back at the end. */
 RDM_API rdm_result rdm_pool_config_memory(const rdm_pool_config *c, size_t *ours, size_t *engines);
-/* Makes the worlds. They are not reset yet: call rdm_pool_reset before the first step. A host's alloc
- * hook is called once, for one block that holds all of the pool; to know its size the task is made
- * once before, as by rdm_pool_config_memory. Without the hook, the C library gives each part. */
+/* Makes the worlds. They are not reset yet: call rdm_pool_reset before the first step. A host's
+ * alloc hook is called once, for one block that holds all of the pool; to know its size the task is
+ * made once before, as by rdm_pool_config_memory. Without the hook, the C library gives each
+ * part. */
 RDM_API rdm_result rdm_pool_create(rdm_pool **out, const rdm_pool_config *c);
 /* The same in memory [bytes] at any address, which is the pool's until it is destroyed, and the
  * caller's all the time: at least `ours` of rdm_pool_config_memory. Fewer are RANGE, and the text

@@ -165,8 +165,8 @@ RDM_API rdm_result rdm_robot_finger_at(int32_t robot, int32_t i,
 RDM_API rdm_result rdm_robot_get_postures(int32_t robot, int32_t *commands, double *home,
                                           double *folded, float *closed);
 /* For joints q [num_links], in the root frame: poses of the links to links [num_links]. *flange,
- * tips [num_fingers][3] and *palm (origin at hold_p, y into the palm, z as the fingers point) may be
- * NULL. */
+ * tips [num_fingers][3] and *palm (origin at hold_p, y into the palm, z as the fingers point) may
+ * be NULL. */
 RDM_API rdm_result rdm_robot_kinematics(int32_t robot, const double *q, rdm_pose *links,
                                         rdm_pose *flange, double *tips, rdm_pose *palm);
 /* Joints q [num_links], from where they are, to where the arm's flange has the pose `flange` in the

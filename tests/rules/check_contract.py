@@ -13,6 +13,7 @@ HANDLES = {"rdm_pool", "rdm_agent", "rdm_policy", "rdm_actor", "rdm_recording", 
 INTEGERS = {"int32_t", "uint32_t", "int64_t", "uint64_t", "size_t"}
 LENGTHS = {"capacity", "scratch_bytes", "note_size", "num_skip", "wanted", "error_size"}  # arguments that say how long another is
 NOT_COUNTED = {"rows", "w", "h"}  # lengths that are int32_t: of rows and pictures
+WIDTH = 100  # columns of the headers
 SHAPE = r"((?:\[[^\]\[]+\])+)"
 WORD = re.compile(r"[A-Za-z_]\w*")
 
@@ -85,8 +86,10 @@ def main(root):
     folder = pathlib.Path(root)
     listed = ["sh", folder / "cmake/headers.sh", folder / "include"]
     names = subprocess.run(listed, check=True, capture_output=True, text=True).stdout.split("\n")[:-1]
-    header = Header("\n".join(pathlib.Path(name).read_text() for name in names))
-    wrong = []
+    texts = [pathlib.Path(name).read_text() for name in names]
+    header = Header("\n".join(texts))
+    wrong = [f"{name}: a line of {len(line)} columns, of {WIDTH}: {line}"
+             for name, text in zip(names, texts) for line in text.split("\n") if len(line) > WIDTH]
     counts = {}
 
     def words(where, shape, names):
