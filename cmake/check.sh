@@ -23,7 +23,7 @@ libc++|the recorded hashes by clang 14 with libc++|arithmetic, standard headers
 arm64 [all]|the recorded hashes on 64-bit ARM under qemu; `all`: also the tests that take half an hour there|arithmetic
 windows|the recorded hashes, the DLL and the tool under wine|arithmetic, system calls
 browser|the library as WebAssembly, in Node and in a page|arithmetic, examples/browser
-languages|the program of `examples/` in every language|the ABI
+languages|the program of `examples/` in every language; the headers in four generators of bindings|the ABI
 packages|`.deb` files and the wheel in clean roots, the reference, the ABI|packages, the ABI
 pages|playback and reports in a browser without a window|the tool's pages
 embedded|policies as C source on Cortex-M processors under qemu|export --c
@@ -162,7 +162,7 @@ case $mode in
     ;;
   languages)
     # The program of examples/LANGUAGE in every language: the tools are Debian's, where there are no others.
-    need bindgen libclang1-14 libclang-common-14-dev luajit libjna-java mono-mcs mono-runtime ruby
+    need bindgen libclang1-14 libclang-common-14-dev luajit libjna-java mono-mcs mono-runtime ruby swig python3-cffi
     for tool in rustc:rustc go:golang-go javac:default-jdk-headless node:nodejs npm:npm; do
       command -v "${tool%%:*}" > /dev/null || need "${tool#*:}"
     done
