@@ -29,7 +29,9 @@ class Agent {
   // Takes over an agent that was made otherwise.
   explicit Agent(rdm_agent* agent) : handle_(agent) {}
   rdm_agent* get() const { return handle_.get(); }
-  void act(const float* obs, int32_t mode, float* action) { check(rdm_agent_act(get(), obs, mode, action)); }
+  void act(const float* obs, int32_t mode, float* action) {
+    check(rdm_agent_act(get(), obs, mode, action));
+  }
   void record(const rdm_transition& t) { check(rdm_agent_record(get(), &t)); }
   void put(const float* obs, const float* action, const rdm_transition& t) {
     check(rdm_agent_put(get(), obs, action, &t));
@@ -57,8 +59,12 @@ class Agent {
     return text_of(rdm_agent_get_settings, static_cast<const rdm_agent*>(get()));
   }
   // The bytes of a policy file.
-  Bytes policy() const { return bytes_of(rdm_agent_write_policy, static_cast<const rdm_agent*>(get())); }
-  Bytes save() const { return bytes_of(rdm_agent_write_state, static_cast<const rdm_agent*>(get())); }
+  Bytes policy() const {
+    return bytes_of(rdm_agent_write_policy, static_cast<const rdm_agent*>(get()));
+  }
+  Bytes save() const {
+    return bytes_of(rdm_agent_write_state, static_cast<const rdm_agent*>(get()));
+  }
   void load(const Bytes& bytes) { check(rdm_agent_read_state(get(), bytes.data(), bytes.size())); }
 
  private:

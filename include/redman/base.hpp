@@ -1,7 +1,8 @@
 // redman/base.hpp: what all owners share: Error, views, handles. C++17, stable since 1.0.
 //
-// Everything throws redman::Error, with the code and the text of the library. A build without exceptions defines
-// REDMAN_THROW(error) before the first #include, as something that does not return:
+// Everything throws redman::Error, with the code and the text of the library. A build without
+// exceptions defines REDMAN_THROW(error) before the first #include, as something that does not
+// return:
 //   #define REDMAN_THROW(error) my_panic((error).what())
 #ifndef REDMAN_BASE_HPP
 #define REDMAN_BASE_HPP
@@ -85,7 +86,8 @@ T* made(rdm_result (*create)(T**, Args...), Args... args) {
 
 using Bytes = std::vector<unsigned char>;
 
-// A text of the library's that is asked for its size first: rdm_pool_get_settings, rdm_agent_get_settings.
+// A text of the library's that is asked for its size first: rdm_pool_get_settings,
+// rdm_agent_get_settings.
 template <class T>
 std::string text_of(rdm_result (*write)(const T*, char*, size_t, size_t*), const T* handle) {
   size_t size = 0;

@@ -1,7 +1,8 @@
 // redman/plan.hpp: owners of actors and planners. C++17, experimental.
 //
 //   redman::Actor actor(redman::actor_config(policy, pool));
-//   actor.act(pool);  pool.step();  actor.reset(pool.buffers().terminated, pool.buffers().truncated);
+//   actor.act(pool);  pool.step();
+//   actor.reset(pool.buffers().terminated, pool.buffers().truncated);
 //
 //   redman::Planner planner(redman::planner_config(pool, "method=cem\nhorizon=20"));
 //   planner.act(pool, 0, pool.action()[0].data());
@@ -14,8 +15,8 @@
 
 namespace redman {
 
-// The defaults of rdm_actor_config_init for a policy in a pool's worlds; both are borrowed, the policy as
-// long as the actor lives.
+// The defaults of rdm_actor_config_init for a policy in a pool's worlds; both are borrowed, the
+// policy as long as the actor lives.
 inline rdm_actor_config actor_config(const Policy& policy, const Pool& pool) {
   rdm_actor_config c;
   check(rdm_actor_config_init(&c, sizeof c));
@@ -29,9 +30,10 @@ class Actor {
  public:
   explicit Actor(const rdm_actor_config& config) : handle_(made(rdm_actor_create, &config)) {}
   rdm_actor* get() const { return handle_.get(); }
-  // action [num_envs][action_dim] of worlds in the mask (null: all), new ones on obs [num_envs][obs_dim]
-  // where they are due; seen: clouds of a policy that sees points.
-  void act(const float* obs, float* action, const uint8_t* mask = nullptr, const rdm_points* seen = nullptr) {
+  // action [num_envs][action_dim] of worlds in the mask (null: all), new ones on
+  // obs [num_envs][obs_dim] where they are due; seen: clouds of a policy that sees points.
+  void act(const float* obs, float* action, const uint8_t* mask = nullptr,
+           const rdm_points* seen = nullptr) {
     check(rdm_actor_act(get(), obs, seen, mask, action));
   }
   // The pool's own rows.
@@ -42,15 +44,19 @@ class Actor {
   void reset(const uint8_t* terminated = nullptr, const uint8_t* truncated = nullptr) {
     check(rdm_actor_reset(get(), terminated, truncated));
   }
-  Bytes state() const { return bytes_of(rdm_actor_write_state, static_cast<const rdm_actor*>(get())); }
-  void set_state(const Bytes& bytes) { check(rdm_actor_read_state(get(), bytes.data(), bytes.size())); }
+  Bytes state() const {
+    return bytes_of(rdm_actor_write_state, static_cast<const rdm_actor*>(get()));
+  }
+  void set_state(const Bytes& bytes) {
+    check(rdm_actor_read_state(get(), bytes.data(), bytes.size()));
+  }
 
  private:
   Handle<rdm_actor, rdm_actor_destroy> handle_;
 };
 
-// The defaults of rdm_planner_config_init for a pool's worlds, with options as lines key=value; both are
-// borrowed.
+// The defaults of rdm_planner_config_init for a pool's worlds, with options as lines key=value;
+// both are borrowed.
 inline rdm_planner_config planner_config(const Pool& pool, const char* settings = nullptr) {
   rdm_planner_config c;
   check(rdm_planner_config_init(&c, sizeof c));
@@ -83,11 +89,17 @@ class Planner {
   std::string settings() const {
     return text_of(rdm_planner_get_settings, static_cast<const rdm_planner*>(get()));
   }
-  Bytes state() const { return bytes_of(rdm_planner_write_state, static_cast<const rdm_planner*>(get())); }
-  void set_state(const Bytes& bytes) { check(rdm_planner_read_state(get(), bytes.data(), bytes.size())); }
+  Bytes state() const {
+    return bytes_of(rdm_planner_write_state, static_cast<const rdm_planner*>(get()));
+  }
+  void set_state(const Bytes& bytes) {
+    check(rdm_planner_read_state(get(), bytes.data(), bytes.size()));
+  }
 
  private:
-  size_t count() const { return static_cast<size_t>(spec_.horizon) * static_cast<size_t>(spec_.action_dim); }
+  size_t count() const {
+    return static_cast<size_t>(spec_.horizon) * static_cast<size_t>(spec_.action_dim);
+  }
   Handle<rdm_planner, rdm_planner_destroy> handle_;
   rdm_planner_spec spec_ = sized<rdm_planner_spec>();
 };

@@ -7,7 +7,8 @@
 
 namespace redman {
 
-// A policy may be shared between threads; each thread needs scratch memory of its own, at any address.
+// A policy may be shared between threads; each thread needs scratch memory of its own, at any
+// address.
 class Policy {
  public:
   explicit Policy(const char* path) : Policy(made(rdm_policy_read_file, path)) {}

@@ -7,9 +7,10 @@
 
 namespace redman {
 
-// The defaults of rdm_pool_config_init with a task, a number of worlds and options as lines key=value. `task`
-// and `settings` are borrowed.
-inline rdm_pool_config pool_config(const char* task, int32_t num_envs = 1, const char* settings = nullptr) {
+// The defaults of rdm_pool_config_init with a task, a number of worlds and options as lines
+// key=value. `task` and `settings` are borrowed.
+inline rdm_pool_config pool_config(const char* task, int32_t num_envs = 1,
+                                   const char* settings = nullptr) {
   rdm_pool_config c;
   check(rdm_pool_config_init(&c, sizeof c));
   c.task = task;
@@ -83,7 +84,9 @@ class Pool {
     return h;
   }
   // All options as lines key=value: as pool_config's settings they make the same pool.
-  std::string settings() const { return text_of(rdm_pool_get_settings, static_cast<const rdm_pool*>(get())); }
+  std::string settings() const {
+    return text_of(rdm_pool_get_settings, static_cast<const rdm_pool*>(get()));
+  }
   std::vector<float> initial_mean() const {
     std::vector<float> mean(static_cast<size_t>(spec_.action_dim));
     check(rdm_pool_get_initial_mean(get(), mean.data()));
@@ -116,8 +119,8 @@ class Pool {
     size_t count = joints;  // another one is refused
     for (const auto* given : {&qd, &q})
       if (!given->empty() && given->size() != joints) count = given->size();
-    check(rdm_pool_set_joints(get(), env, q.empty() ? nullptr : q.data(), qd.empty() ? nullptr : qd.data(),
-                              count));
+    check(rdm_pool_set_joints(get(), env, q.empty() ? nullptr : q.data(),
+                              qd.empty() ? nullptr : qd.data(), count));
   }
   // hit.shape is -1 where the ray meets nothing.
   rdm_ray_hit raycast(int32_t env, const double (&origin)[3], const double (&direction)[3],

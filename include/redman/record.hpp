@@ -11,7 +11,8 @@
 
 namespace redman {
 
-// The defaults of rdm_recording_config_init, for rows of a pool; its pointers are borrowed from the pool.
+// The defaults of rdm_recording_config_init, for rows of a pool; its pointers are borrowed from the
+// pool.
 inline rdm_recording_config recording_config(const Pool& pool) {
   rdm_recording_config c;
   check(rdm_recording_config_init(&c, sizeof c));
@@ -22,7 +23,8 @@ inline rdm_recording_config recording_config(const Pool& pool) {
 class Recording {
  public:
   Recording() = default;  // none: get() is null
-  explicit Recording(const rdm_recording_config& config) : handle_(made(rdm_recording_create, &config)) {}
+  explicit Recording(const rdm_recording_config& config)
+      : handle_(made(rdm_recording_create, &config)) {}
   // With memory for so many rows.
   explicit Recording(const Pool& pool, int64_t capacity = 0) {
     rdm_recording_config c = recording_config(pool);

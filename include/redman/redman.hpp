@@ -1,13 +1,15 @@
-// redman/redman.hpp: C++17 over the stable headers. Owners that end their handle, views of buffers, exceptions; no
-// behaviour of its own. What a call does, needs and returns is written in the header of the same name. Experimental owners are
-// in sense.hpp, map.hpp, plan.hpp and record.hpp.
+// redman/redman.hpp: C++17 over the stable headers. Owners that end their handle, views of buffers,
+// exceptions; no behaviour of its own. What a call does, needs and returns is written in the header
+// of the same name. Experimental owners are in sense.hpp, map.hpp, plan.hpp and record.hpp.
 //
 //   redman::Pool pool(redman::pool_config("hand_over_safe_finger", 16));
 //   pool.reset();
-//   for (;;) { pool.baseline(RDM_BASELINE_RANDOM);  pool.step();  use(pool.obs()[i], pool.reward()[i]); }
+//   for (;;) {
+//     pool.baseline(RDM_BASELINE_RANDOM);  pool.step();  use(pool.obs()[i], pool.reward()[i]);
+//   }
 //
-// Everything throws redman::Error, with the code and the text of the library. Owners can be moved, not
-// copied; a moved-from owner may only be destroyed or assigned to.
+// Everything throws redman::Error, with the code and the text of the library. Owners can be moved,
+// not copied; a moved-from owner may only be destroyed or assigned to.
 #ifndef REDMAN_HPP
 #define REDMAN_HPP
 #include <redman/redman.h>

@@ -1,4 +1,5 @@
-// redman_map.hpp: the name of <redman/map.hpp> and <redman/sense.hpp> before 1.0, with all experimental headers.
+// redman_map.hpp: the name of <redman/map.hpp> and <redman/sense.hpp> before 1.0, with all
+// experimental headers.
 #ifndef RDM_EXPERIMENTAL
 #define RDM_EXPERIMENTAL
 #endif

@@ -23,8 +23,8 @@ inline Rows<const float> points(const rdm_sensors& s, size_t env) {
   return {s.points ? s.points + 3 * n * env : nullptr, n, 3};
 }
 
-// Clouds [rows][count][3], m, world; classes [rows][count] and colors [rows][count][3] or NULL. All are
-// borrowed.
+// Clouds [rows][count][3], m, world; classes [rows][count] and colors [rows][count][3] or NULL. All
+// are borrowed.
 inline rdm_points points(const float* metres, int32_t count, const uint8_t* classes = nullptr,
                          const uint8_t* colors = nullptr) {
   auto p = sized<rdm_points>();
@@ -39,12 +39,14 @@ inline rdm_points points(const rdm_sensors& seen) {
   return points(seen.points, seen.num_points, seen.point_class, seen.point_color);
 }
 
-inline void act(const Agent& agent, const float* obs, const rdm_points& seen, int32_t mode, float* action) {
+inline void act(const Agent& agent, const float* obs, const rdm_points& seen, int32_t mode,
+                float* action) {
   check(rdm_agent_act_points(agent.get(), obs, &seen, mode, action));
 }
 inline void act(const Policy& policy, const float* obs, const rdm_points& seen, int32_t rows,
                 const float* noise, float* action, void* scratch, size_t scratch_bytes) {
-  check(rdm_policy_act_points(policy.get(), obs, &seen, rows, noise, action, scratch, scratch_bytes));
+  check(
+      rdm_policy_act_points(policy.get(), obs, &seen, rows, noise, action, scratch, scratch_bytes));
 }
 // The same with scratch from the heap, for who does not count calls.
 inline void act(const Policy& policy, const float* obs, const rdm_points& seen, int32_t rows,
@@ -53,15 +55,17 @@ inline void act(const Policy& policy, const float* obs, const rdm_points& seen, 
   act(policy, obs, seen, rows, noise, action, scratch.data(), scratch.size());
 }
 
-// label [rows][seen.num_points], less than num_labels; the rest of `how` as rdm_pretrain_config_init has it.
+// label [rows][seen.num_points], less than num_labels; the rest of `how` as
+// rdm_pretrain_config_init has it.
 inline rdm_pretrain_config pretrain_config(int32_t num_labels) {
   rdm_pretrain_config how;
   check(rdm_pretrain_config_init(&how, sizeof how));
   how.num_labels = num_labels;
   return how;
 }
-inline rdm_pretrain_report pretrain(const Agent& agent, const rdm_points& seen, const uint8_t* label,
-                                    int32_t rows, const rdm_pretrain_config& how) {
+inline rdm_pretrain_report pretrain(const Agent& agent, const rdm_points& seen,
+                                    const uint8_t* label, int32_t rows,
+                                    const rdm_pretrain_config& how) {
   auto report = sized<rdm_pretrain_report>();
   check(rdm_agent_pretrain(agent.get(), &seen, label, rows, &how, &report));
   return report;

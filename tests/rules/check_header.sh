@@ -1,6 +1,7 @@
 #!/bin/sh
 # The public headers compile alone in every dialect without a warning, no struct of the C ones has hidden
-# padding, and everything in them has a comment. Arguments: the project's root, a C and a C++ compiler.
+# padding, everything in them has a comment, and no line is longer than 100 columns. Arguments: the project's
+# root, a C and a C++ compiler.
 set -u
 root=$1 cc=$2 cxx=$3
 status=0
@@ -32,4 +33,6 @@ for compiler in "$cxx" clang++; do
 done
 bare=$(awk -v mode=docs -f "$root/tests/rules/header.awk" "$root"/include/redman/*.h)
 [ -z "$bare" ] || { echo "$bare"; status=1; }
+wide=$(cd "$root/include/redman" && grep -n '.\{101\}' -- *)
+[ -z "$wide" ] || { echo "longer than 100 columns: $wide"; status=1; }
 exit $status

@@ -3669,9 +3669,10 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_pool_create": Function(
         c_int32, {"out": POINTER(c_void_p), "c": POINTER(rdm_pool_config)},
         {}, False,
-        """Makes the worlds. They are not reset yet: call rdm_pool_reset before the first step. A host's alloc
-        hook is called once, for one block that holds all of the pool; to know its size the task is made
-        once before, as by rdm_pool_config_memory. Without the hook, the C library gives each part.
+        """Makes the worlds. They are not reset yet: call rdm_pool_reset before the first step. A host's
+        alloc hook is called once, for one block that holds all of the pool; to know its size the task is
+        made once before, as by rdm_pool_config_memory. Without the hook, the C library gives each
+        part.
         """),
     "rdm_pool_create_in": Function(
         c_int32, {"out": POINTER(c_void_p), "c": POINTER(rdm_pool_config), "memory": c_void_p, "bytes": c_size_t},
