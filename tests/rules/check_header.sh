@@ -1,7 +1,8 @@
 #!/bin/sh
 # The public headers compile alone in every dialect without a warning, no struct of the C ones has hidden
 # padding, everything in them has a comment, and no line is longer than 100 columns. Arguments: the project's
-# root, a C and a C++ compiler.
+# root, a C and a C++ compiler. The owners in C++ compile without exceptions, too, and where REDMAN_THROW is
+# not given then, they say so.
 set -u
 root=$1 cc=$2 cxx=$3
 status=0
@@ -30,6 +31,14 @@ for compiler in "$cxx" clang++; do
     for header in $headers; do try "$compiler" c++ "$header" $dialect; done
     for header in $owners; do try "$compiler" c++ "$header" $dialect; done
   done
+  for header in $owners; do
+    # shellcheck disable=SC2086
+    printf '#define REDMAN_THROW(error) ((void)(error).what(), __builtin_trap())\n#include <redman/%s>\n' "$header" |
+      "$compiler" -x c++ -std=c++17 -fno-exceptions -fno-rtti "-I$root/include" $strict - ||
+      { echo "$header without exceptions with $compiler: see above"; status=1; }
+  done
+  echo '#include <redman/redman.hpp>' | "$compiler" -x c++ -std=c++17 -fno-exceptions "-I$root/include" -fsyntax-only - 2>&1 |
+    grep -q 'error: .*define REDMAN_THROW' || { echo "redman.hpp without exceptions asks for no REDMAN_THROW with $compiler"; status=1; }
 done
 bare=$(awk -v mode=docs -f "$root/tests/rules/header.awk" "$root"/include/redman/*.h)
 [ -z "$bare" ] || { echo "$bare"; status=1; }
