@@ -41,7 +41,7 @@ class Agent {
     check(rdm_agent_update(get(), last_obs, &e));
     return e;
   }
-  // The same in slices: begin, then slices until one is the last, of which `epoch` (may be null) tells.
+  // The same in slices: begin, then slices until one is the last; epoch, if given, tells of it.
   void update_begin(const float* last_obs) { check(rdm_agent_update_begin(get(), last_obs)); }
   bool update_slice(int32_t units, rdm_epoch* epoch = nullptr) {
     int32_t done = 0;
