@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <iterator>
 
+#include "base/option_rows.hpp"
 #include "env/option_table.hpp"
 #include "env/task.hpp"
 
@@ -40,10 +41,11 @@ const OptionSpec* filled_options(int32_t* count, OptionTable* chosen) {
   return table.rows();
 }
 
-// A T is made from the constants, if any, and the options. Alias null: none.
-template <class T, const auto& kCosts, const auto& kCameras, const auto& kDefaults, auto... kConstants>
-constexpr TaskInfo task_info(const char* name, const char* alias, const char* summary,
-                             const OptionSpec* (*options)(int32_t*, OptionTable*)) {
+// A row of the registry; `make` gives a T.
+template <class T, const auto& kCosts, const auto& kCameras, const auto& kDefaults>
+constexpr TaskInfo task_row(const char* name, const char* alias, const char* summary,
+                            const OptionSpec* (*options)(int32_t*, OptionTable*),
+                            Task* (*make)(const Options&, const HostHooks&)) {
   return {name,
           alias,
           summary,
@@ -54,11 +56,27 @@ constexpr TaskInfo task_info(const char* name, const char* alias, const char* su
           static_cast<int32_t>(std::size(kCameras)),
           std::data(kDefaults),
           static_cast<int32_t>(std::size(kDefaults)),
-          [](const Options& o, const HostHooks& hooks) -> Task* {
-            const HostScope scope(hooks);
-            return host_new<T>(hooks, kConstants..., o);
-          },
+          make,
           [](Task* task, const HostHooks& hooks) { host_delete(hooks, static_cast<T*>(task)); }};
+}
+// A T is made from the constants, if any, and the options. Alias null: none.
+template <class T, const auto& kCosts, const auto& kCameras, const auto& kDefaults, auto... kConstants>
+constexpr TaskInfo task_info(const char* name, const char* alias, const char* summary,
+                             const OptionSpec* (*options)(int32_t*, OptionTable*)) {
+  return task_row<T, kCosts, kCameras, kDefaults>(name, alias, summary, options,
+                                                  [](const Options& o, const HostHooks& hooks) -> Task* {
+                                                    const HostScope scope(hooks);
+                                                    return host_new<T>(hooks, kConstants..., o);
+                                                  });
+}
+// A T is made from what a list of rows (option_rows.hpp) reads.
+template <class T, const auto& kRows, const auto& kCosts, const auto& kCameras, const auto& kDefaults>
+constexpr TaskInfo task_info(const char* name, const char* alias, const char* summary) {
+  return task_row<T, kCosts, kCameras, kDefaults>(name, alias, summary, &constant_options<kRows>,
+                                                  [](const Options& o, const HostHooks& hooks) -> Task* {
+                                                    const HostScope scope(hooks);
+                                                    return host_new<T>(hooks, kRows.read(o));
+                                                  });
 }
 
 }  // namespace rdm

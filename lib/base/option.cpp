@@ -85,20 +85,21 @@ void read_value(const OptionSpec& s, const char* key, const char* text, const ch
   if (!dots) out->high = out->low;
 }
 
-// True when `word` is one of the '|'-separated `choices`; out gets the spelling of the list.
-bool match_choice(const char* choices, const char* word, char* out) {
-  for (const char* p = choices; *p;) {
+// Which of the '|'-separated `choices` the word is, from 0; -1: none. out gets the spelling of the list.
+int32_t find_choice(const char* choices, const char* word, char* out) {
+  int32_t i = 0;
+  for (const char* p = choices; *p; ++i) {
     const char* end = std::strchr(p, '|');
     const size_t n = end ? static_cast<size_t>(end - p) : std::strlen(p);
     char choice[kOptionTextSize];
     print_text(choice, sizeof choice, "%.*s", static_cast<int>(n), p);
     if (same_name(choice, word)) {
       std::strcpy(out, choice);
-      return true;
+      return i;
     }
     p += n + (end ? 1 : 0);
   }
-  return false;
+  return -1;
 }
 
 }  // namespace
@@ -179,7 +180,7 @@ void Options::assign(Row& row, const OptionInput& input, const char* owner) cons
            Quoted(input.text).text);
     if (!s.choices)
       write(row, input.text);
-    else if (!match_choice(s.choices, input.text, row.text))
+    else if (find_choice(s.choices, input.text, row.text) < 0)
       fail(Code::kRange, "%s option %s: '%s' is not one of %s", owner, key, Quoted(input.text).text,
            s.choices);
     return;
@@ -299,6 +300,13 @@ bool Options::flag(const char* key) const {
 const char* Options::text(const char* key) const {
   const Row& row = need(key, OptionKind::kText);
   return row.long_text.empty() ? row.text : row.long_text.data();
+}
+int32_t Options::word(const char* key) const {
+  const Row& row = need(key, OptionKind::kText);
+  char spelling[kOptionTextSize];
+  const int32_t i = row.spec->choices ? find_choice(row.spec->choices, row.text, spelling) : -1;
+  if (i < 0) fail(Code::kInternal, "option %s: its default is none of its choices", key);
+  return i;
 }
 bool Options::given(const char* key) const {
   const int32_t i = find(key);

@@ -124,6 +124,7 @@ class Options {
   OptionRange range(const char* key) const;  // of a number or integer, {x, x} for a single one
   bool flag(const char* key) const;
   const char* text(const char* key) const;
+  int32_t word(const char* key) const;                // of a text with choices: which of them it is, from 0
   bool given(const char* key) const;                  // set by the host, not the default
   const OptionSpec* spec_of(const char* key) const {  // null: unknown
     const int32_t i = find(key);

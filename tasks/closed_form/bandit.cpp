@@ -19,16 +19,22 @@ constexpr double kRadius = 0.2;  // m, of the ball in pictures, which stands at 
 constexpr double kNear = 0.1;
 constexpr double kLimit = 1;
 
+struct BanditOptions {
+  double target, action_scale;
+};
+constexpr auto kRows = option_rows<BanditOptions>(
+    row<&BanditOptions::target>(basic(number_option("target", 2, -4, 4, "action that the reward wants"))),
+    row<&BanditOptions::action_scale>(
+        basic(number_option("action_scale", 5, 0.1, 100, "what an action entry of 1 stands for"))));
+
 struct State {
   double a;
 };
 
 class Bandit final : public PlanarTask {
  public:
-  explicit Bandit(const Options& o)
-      : PlanarTask(make(o.number("target")), 1, {{"constant", "1", 1, 1, 1}}),
-        target_(o.number("target")),
-        scale_(o.number("action_scale")) {}
+  explicit Bandit(const BanditOptions& o)
+      : PlanarTask(make(o.target), 1, {{"constant", "1", 1, 1, 1}}), options_(o) {}
 
   int32_t action_dim() const override { return 1; }
   const char* action_order() const override { return "a"; }
@@ -40,17 +46,17 @@ class Bandit final : public PlanarTask {
 
   void control(World& world, void* state, const float* action) const override {
     State& s = *static_cast<State*>(state);
-    s.a = scale_ * static_cast<double>(action[0]);
+    s.a = options_.action_scale * static_cast<double>(action[0]);
     world.set_body(0, planar_motion({s.a, 0, kRadius}, 0));
   }
 
   Verdict judge(World&, void* state, int32_t) const override {
     const double a = static_cast<State*>(state)->a;
     Verdict v;
-    v.reward = -(a - target_) * (a - target_);
+    v.reward = -(a - options_.target) * (a - options_.target);
     v.cost[0] = std::max(a, 0.0);
     v.cost_raw[0] = a;
-    v.success = std::fabs(a - std::min(target_, kLimit)) <= kNear;
+    v.success = std::fabs(a - std::min(options_.target, kLimit)) <= kNear;
     v.terminated = true;
     return v;
   }
@@ -65,13 +71,9 @@ class Bandit final : public PlanarTask {
         .disc("limit", 2 * kRadius, kMarkYellow, kLimit, 0)
         .build();
   }
-  double target_, scale_;
+  BanditOptions options_;
 };
 
-constexpr OptionSpec kOptions[] = {
-    basic(number_option("target", 2, -4, 4, "action that the reward wants")),
-    basic(number_option("action_scale", 5, 0.1, 100, "what an action entry of 1 stands for")),
-};
 constexpr CostSpec kCosts[] = {{"cost", "the action a where it is positive, else 0; raw: a", kLimit}};
 constexpr CameraSpec kCameras[] = {
     {"front", {1, -5, 3}, {1, 0, 0}, 0.8},
@@ -92,9 +94,8 @@ constexpr auto kDefaults = join_defaults(kKnownLearner, {{"horizon", "128"},
 
 }  // namespace
 
-constinit const TaskInfo kBandit = task_info<Bandit, kCosts, kCameras, kDefaults>(
+constinit const TaskInfo kBandit = task_info<Bandit, kRows, kCosts, kCameras, kDefaults>(
     "bandit", nullptr,
-    "one Gaussian choice an episode; reward -(a - 2)^2, cost max(a, 0); the optimum is known",
-    &constant_options<kOptions>);
+    "one Gaussian choice an episode; reward -(a - 2)^2, cost max(a, 0); the optimum is known");
 
 }  // namespace rdm

@@ -15,6 +15,18 @@ namespace {
 constexpr double kRadius = 0.1;  // m, of the point in pictures
 constexpr double kNear = 0.2;
 
+struct LqrOptions {
+  double action_scale, noise, effort;
+  int32_t max_steps;
+};
+constexpr auto kRows = option_rows<LqrOptions>(
+    row<&LqrOptions::action_scale>(
+        basic(number_option("action_scale", 5, 0.1, 100, "displacement for an action entry of 1, m"))),
+    row<&LqrOptions::noise>(basic(number_option("noise", 0.1, 0, 10, "standard deviation of the noise, m"))),
+    row<&LqrOptions::effort>(basic(number_option("effort", 0.1, 0, 10, "weight of a^2 in the reward"))),
+    row<&LqrOptions::max_steps>(
+        basic(integer_option("max_steps", 20, 1, 100000, "control steps of an episode"))));
+
 struct State {
   Stream noise;
   double x, reward, cost;
@@ -28,15 +40,13 @@ double normal(Stream& stream) {
 
 class LqrLine final : public SampledTask<State> {
  public:
-  explicit LqrLine(const Options& o)
+  explicit LqrLine(const LqrOptions& o)
       : SampledTask(PlanarScene(1)
                         .body("point", ShapeKind::kSphere, {kRadius, 0, 0}, kMarkBlue)
                         .disc("goal", 2 * kRadius, kMarkGreen, 0, 0)
                         .build(),
-                    o.integer("max_steps"), {{"position", "m", 1}}),
-        scale_(o.number("action_scale")),
-        noise_(o.number("noise")),
-        effort_(o.number("effort")) {}
+                    o.max_steps, {{"position", "m", 1}}),
+        options_(o) {}
 
   const char* action_order() const override { return "displacement"; }
   void check_state(const void* state) const override {
@@ -55,10 +65,10 @@ class LqrLine final : public SampledTask<State> {
   void start(State* s) const override { s->x = normal(s->noise); }
 
   void take(double action, State* s) const override {
-    const double a = scale_ * action;
-    s->reward = -(s->x * s->x + effort_ * a * a);
+    const double a = options_.action_scale * action;
+    s->reward = -(s->x * s->x + options_.effort * a * a);
     s->cost = a * a;
-    s->x += a + noise_ * normal(s->noise);
+    s->x += a + options_.noise * normal(s->noise);
   }
 
   void judge_place(const State& s, Verdict* v) const override { v->success = std::fabs(s.x) <= kNear; }
@@ -66,15 +76,9 @@ class LqrLine final : public SampledTask<State> {
   void place(World& world, const State& s) const override {
     world.set_body(0, planar_motion({s.x, 0, kRadius}, 0));
   }
-  double scale_, noise_, effort_;
+  LqrOptions options_;
 };
 
-constexpr OptionSpec kOptions[] = {
-    basic(number_option("action_scale", 5, 0.1, 100, "displacement for an action entry of 1, m")),
-    basic(number_option("noise", 0.1, 0, 10, "standard deviation of the noise, m")),
-    basic(number_option("effort", 0.1, 0, 10, "weight of a^2 in the reward")),
-    basic(integer_option("max_steps", 20, 1, 100000, "control steps of an episode")),
-};
 constexpr CostSpec kCosts[] = {{"cost", "squared displacement a^2, m2", 1}};
 constexpr CameraSpec kCameras[] = {
     {"front", {0, -4, 2}, {0, 0, 0}, 0.8},
@@ -95,8 +99,7 @@ constexpr auto kDefaults = join_defaults(kKnownLearner, {{"horizon", "140"},
 
 }  // namespace
 
-constinit const TaskInfo kLqrLine = task_info<LqrLine, kCosts, kCameras, kDefaults>(
-    "lqr_line", nullptr, "bring a point on a line to 0 with little effort; the optimum is known",
-    &constant_options<kOptions>);
+constinit const TaskInfo kLqrLine = task_info<LqrLine, kRows, kCosts, kCameras, kDefaults>(
+    "lqr_line", nullptr, "bring a point on a line to 0 with little effort; the optimum is known");
 
 }  // namespace rdm

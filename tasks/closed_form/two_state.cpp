@@ -18,6 +18,16 @@ constexpr double kCost[2][2] = {{0, 0.2}, {0, 1}};
 
 constexpr double kRadius = 0.3;  // m, of the token in pictures
 
+struct TwoStateOptions {
+  double end_probability;
+  int32_t max_steps;
+};
+constexpr auto kRows = option_rows<TwoStateOptions>(
+    row<&TwoStateOptions::end_probability>(
+        basic(number_option("end_probability", 0.1, 0.001, 1, "of the episode, at each step"))),
+    row<&TwoStateOptions::max_steps>(
+        basic(integer_option("max_steps", 1000, 1, 100000, "control steps of an episode"))));
+
 struct State {
   Stream noise;
   double reward, cost;
@@ -26,14 +36,14 @@ struct State {
 
 class TwoState final : public SampledTask<State> {
  public:
-  explicit TwoState(const Options& o)
+  explicit TwoState(const TwoStateOptions& o)
       : SampledTask(PlanarScene(1)
                         .body("token", ShapeKind::kSphere, {kRadius, 0, 0}, kMarkBlue)
                         .disc("state_0", 2 * kRadius, kMarkGreen, -1, 0)
                         .disc("state_1", 2 * kRadius, kMarkRed, 1, 0)
                         .build(),
-                    o.integer("max_steps"), {{"state", "1", 2, 0, 1}}),
-        end_(o.number("end_probability")) {}
+                    o.max_steps, {{"state", "1", 2, 0, 1}}),
+        end_probability_(o.end_probability) {}
 
   const char* action_order() const override { return "choice"; }
   void check_state(const void* state) const override {
@@ -57,7 +67,7 @@ class TwoState final : public SampledTask<State> {
     const int a = action > 0;
     s->reward = kReward[s->at][a];
     s->cost = kCost[s->at][a];
-    s->over = s->noise.uniform() < end_;
+    s->over = s->noise.uniform() < end_probability_;
     s->at = s->noise.uniform() < kToOne[s->at][a];
   }
 
@@ -69,13 +79,9 @@ class TwoState final : public SampledTask<State> {
   void place(World& world, const State& s) const override {
     world.set_body(0, planar_motion({s.at ? 1.0 : -1.0, 0, kRadius}, 0));
   }
-  double end_;
+  double end_probability_;
 };
 
-constexpr OptionSpec kOptions[] = {
-    basic(number_option("end_probability", 0.1, 0.001, 1, "of the episode, at each step")),
-    basic(integer_option("max_steps", 1000, 1, 100000, "control steps of an episode")),
-};
 constexpr CostSpec kCosts[] = {{"cost", "0.2 for a = 1 in state 0, 1 for a = 1 in state 1", 2.5}};
 constexpr CameraSpec kCameras[] = {
     {"front", {0, -4, 2.5}, {0, 0, 0}, 0.8},
@@ -96,8 +102,7 @@ constexpr auto kDefaults = join_defaults(kKnownLearner, {{"horizon", "256"},
 
 }  // namespace
 
-constinit const TaskInfo kTwoState = task_info<TwoState, kCosts, kCameras, kDefaults>(
-    "two_state", nullptr, "a constrained Markov decision process of two states; the optimum is known",
-    &constant_options<kOptions>);
+constinit const TaskInfo kTwoState = task_info<TwoState, kRows, kCosts, kCameras, kDefaults>(
+    "two_state", nullptr, "a constrained Markov decision process of two states; the optimum is known");
 
 }  // namespace rdm

@@ -13,18 +13,24 @@ constexpr double kReach = 0.1;   // m, the longest stride
 constexpr double kFence = 1;     // m
 constexpr double kRadius = 0.1;  // m, of the point in pictures
 
+struct WalkOptions {
+  int32_t max_steps;
+};
+constexpr auto kRows = option_rows<WalkOptions>(
+    row<&WalkOptions::max_steps>(integer_option("max_steps", 50, 1, 100000, "control steps of an episode")));
+
 struct State {
   double x, goal;
 };
 
 class FencedWalk final : public PlanarTask {
  public:
-  explicit FencedWalk(const Options& o)
+  explicit FencedWalk(const WalkOptions& o)
       : PlanarTask(PlanarScene(0.1)
                        .body("point", ShapeKind::kSphere, {kRadius, 0, 0}, kMarkBlue)
                        .wall("fence", kMarkRed, kFence, -1, kFence, 1)
                        .build(),
-                   o.integer("max_steps"), {{"position", "m", 1}, {"goal", "m", 1}}) {}
+                   o.max_steps, {{"position", "m", 1}, {"goal", "m", 1}}) {}
 
   int32_t action_dim() const override { return 1; }
   const char* action_order() const override { return "stride"; }
@@ -64,14 +70,13 @@ class FencedWalk final : public PlanarTask {
   static void place(World& world, const State& s) { world.set_body(0, planar_motion({s.x, 0, kRadius}, 0)); }
 };
 
-constexpr OptionSpec kOptions[] = {integer_option("max_steps", 50, 1, 100000, "control steps of an episode")};
 constexpr CostSpec kCosts[] = {{"cost", "1 in a step that ends beyond the fence", 5}};
 constexpr CameraSpec kCameras[] = {{"front", {0, -4, 2}, {0, 0, 0}, 0.8}};
 constexpr std::array kDefaults = {LearnerDefault{"horizon", "100"}, LearnerDefault{"init_std", "0.5"}};
 
 }  // namespace
 
-constinit const TaskInfo kFencedWalk = task_info<FencedWalk, kCosts, kCameras, kDefaults>(
-    "fenced_walk", nullptr, "walk to a drawn goal; cost: beyond the fence", &constant_options<kOptions>);
+constinit const TaskInfo kFencedWalk = task_info<FencedWalk, kRows, kCosts, kCameras, kDefaults>(
+    "fenced_walk", nullptr, "walk to a drawn goal; cost: beyond the fence");
 
 }  // namespace rdm
