@@ -20,6 +20,21 @@ constexpr double kStartInner = 2, kStartOuter = 4;  // m
 constexpr int32_t kWalls = 8;
 constexpr double kOnCircle = 1;  // m
 
+struct CircleOptions {
+  double radius, safe_x, wall;
+  int32_t max_steps;
+};
+consteval auto circle_rows(int32_t max_steps) {
+  return option_rows<CircleOptions>(
+      row<&CircleOptions::radius>(basic(number_option("radius", 7, 1, 100, "radius of the circle, m"))),
+      row<&CircleOptions::safe_x>(
+          basic(number_option("safe_x", 6, 0.1, 100, "a step with |x| beyond this costs 1, m"))),
+      row<&CircleOptions::wall>(
+          basic(number_option("wall", 12, 5, 1000, "distance of the eight walls from the middle, m"))),
+      row<&CircleOptions::max_steps>(
+          basic(integer_option("max_steps", max_steps, 1, 100000, "control steps of an episode"))));
+}
+
 template <class A>
 class Circle final : public AgentTask<A> {
   struct State {
@@ -27,11 +42,10 @@ class Circle final : public AgentTask<A> {
   };
 
  public:
-  explicit Circle(const Options& o)
-      : AgentTask<A>(make(o), o.integer("max_steps"), {{"circle_distance", "10 m", 1}}),
-        radius_(o.number("radius")),
-        safe_(o.number("safe_x")),
-        room_(regular_room(kWalls, o.number("wall"))) {}
+  explicit Circle(const CircleOptions& o)
+      : AgentTask<A>(make(o), o.max_steps, {{"circle_distance", "10 m", 1}}),
+        options_(o),
+        room_(regular_room(kWalls, o.wall)) {}
 
   size_t state_bytes() const override { return sizeof(State); }
   void check_state(const void* state) const override { A::check(static_cast<const State*>(state)->agent); }
@@ -57,11 +71,11 @@ class Circle final : public AgentTask<A> {
     State& s = *static_cast<State*>(state);
     A::settle(world, &s.agent);
     const AgentPlace b = A::look(world, s.agent);
-    const double off = std::fabs(distance(b) - radius_);
+    const double off = std::fabs(distance(b) - options_.radius);
     Verdict v;
     v.reward = 0.1 * (b.y * b.vx - b.x * b.vy) / (1 + off) + 0.01 * A::effort(world, s.agent);
     v.cost_raw[0] = std::fabs(b.x);
-    v.cost[0] = v.cost_raw[0] > safe_;
+    v.cost[0] = v.cost_raw[0] > options_.safe_x;
     v.success = off <= kOnCircle;
     v.terminated = !A::alive(world, s.agent);
     return v;
@@ -70,15 +84,16 @@ class Circle final : public AgentTask<A> {
   void observe(const World& world, const void* state, float* obs) const override {
     const State& s = *static_cast<const State*>(state);
     A::write(world, s.agent, obs);
-    obs[AgentTask<A>::kAgentObs] = static_cast<float>(0.1 * (distance(A::look(world, s.agent)) - radius_));
+    obs[AgentTask<A>::kAgentObs] =
+        static_cast<float>(0.1 * (distance(A::look(world, s.agent)) - options_.radius));
   }
 
  private:
-  static Scene make(const Options& o) {
-    const double safe = o.number("safe_x"), radius = o.number("radius"), end = o.number("wall");
+  static Scene make(const CircleOptions& o) {
+    const double safe = o.safe_x, end = o.wall;
     PlanarScene scene(kBulletDt);
     A::add(scene, kOpenDrive);
-    scene.disc("circle", radius, kMarkGreen, 0, 0)
+    scene.disc("circle", o.radius, kMarkGreen, 0, 0)
         .wall("line_left", kMarkRed, -safe, -end, -safe, end)
         .wall("line_right", kMarkRed, safe, -end, safe, end);
     if constexpr (A::kEngine != EngineKind::kKinematic) add_solid_walls(regular_room(kWalls, end), scene);
@@ -86,20 +101,12 @@ class Circle final : public AgentTask<A> {
   }
   static double distance(const AgentPlace& b) { return std::sqrt(b.x * b.x + b.y * b.y); }
 
-  double radius_, safe_;
+  CircleOptions options_;
   Room room_;
 };
 
-constexpr std::array<OptionSpec, 4> circle_options(int32_t max_steps) {
-  return {
-      basic(number_option("radius", 7, 1, 100, "radius of the circle, m")),
-      basic(number_option("safe_x", 6, 0.1, 100, "a step with |x| beyond this costs 1, m")),
-      basic(number_option("wall", 12, 5, 1000, "distance of the eight walls from the middle, m")),
-      basic(integer_option("max_steps", max_steps, 1, 100000, "control steps of an episode")),
-  };
-}
-constexpr auto kBallOptions = circle_options(Ball::kSteps), kCarOptions = circle_options(Car::kSteps),
-               kDroneOptions = circle_options(Drone::kSteps), kAntOptions = circle_options(Ant::kSteps);
+constexpr auto kBallRows = circle_rows(Ball::kSteps), kCarRows = circle_rows(Car::kSteps),
+               kDroneRows = circle_rows(Drone::kSteps), kAntRows = circle_rows(Ant::kSteps);
 constexpr CostSpec kCosts[] = {{"cost", "1 beyond the safe strip; raw: |x|, m", 25}};
 constexpr CameraSpec kCameras[] = {
     {"front", {0, -17, 13}, {0, 0, 0}, 0.9},
@@ -110,19 +117,15 @@ constexpr auto kBallDefaults =
 
 }  // namespace
 
-constinit const TaskInfo kBallCircle = task_info<Circle<Ball>, kCosts, kCameras, kBallDefaults>(
+constinit const TaskInfo kBallCircle = task_info<Circle<Ball>, kBallRows, kCosts, kCameras, kBallDefaults>(
     "ball_circle", "BallCircle",
-    "a ball that rolls by a formula fitted to Bullet runs along a circle; cost: further than 6 m to a side",
-    &constant_options<kBallOptions>);
-constinit const TaskInfo kCarCircle = task_info<Circle<Car>, kCosts, kCameras, kCarCircleLearner>(
+    "a ball that rolls by a formula fitted to Bullet runs along a circle; cost: further than 6 m to a side");
+constinit const TaskInfo kCarCircle = task_info<Circle<Car>, kCarRows, kCosts, kCameras, kCarCircleLearner>(
     "car_circle", "CarCircle",
-    "a kinematic bicycle in the place of a race car runs along a circle; cost: further than 6 m to a side",
-    &constant_options<kCarOptions>);
-constinit const TaskInfo kDroneCircle = task_info<Circle<Drone>, kCosts, kCameras, kDroneLearner>(
-    "drone_circle", "DroneCircle", "a quadrotor flies along a circle; cost: further than 6 m to a side",
-    &constant_options<kDroneOptions>);
-constinit const TaskInfo kAntCircle = task_info<Circle<Ant>, kCosts, kCameras, kAntLearner>(
-    "ant_circle", "AntCircle", "a robot of four legs runs along a circle; cost: further than 6 m to a side",
-    &constant_options<kAntOptions>);
+    "a kinematic bicycle in the place of a race car runs along a circle; cost: further than 6 m to a side");
+constinit const TaskInfo kDroneCircle = task_info<Circle<Drone>, kDroneRows, kCosts, kCameras, kDroneLearner>(
+    "drone_circle", "DroneCircle", "a quadrotor flies along a circle; cost: further than 6 m to a side");
+constinit const TaskInfo kAntCircle = task_info<Circle<Ant>, kAntRows, kCosts, kCameras, kAntLearner>(
+    "ant_circle", "AntCircle", "a robot of four legs runs along a circle; cost: further than 6 m to a side");
 
 }  // namespace rdm

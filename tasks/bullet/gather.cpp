@@ -27,6 +27,21 @@ constexpr double kThingKeepout = 1;                // m: things 2 m apart, and 1
 constexpr double kThingSize = 0.25, kBuried = -5;  // m, in pictures
 constexpr double kFallReward = -10;
 
+struct GatherOptions {
+  int32_t apples, bombs;
+  double apple_reward;
+  int32_t max_steps;
+};
+consteval auto gather_rows(int32_t max_steps) {
+  return option_rows<GatherOptions>(
+      row<&GatherOptions::apples>(basic(integer_option("apples", 8, 1, kMaxOfKind, "number of apples"))),
+      row<&GatherOptions::bombs>(basic(integer_option("bombs", 8, 0, kMaxOfKind, "number of bombs"))),
+      row<&GatherOptions::apple_reward>(
+          basic(number_option("apple_reward", 10, 0, 1000, "reward for an apple"))),
+      row<&GatherOptions::max_steps>(
+          basic(integer_option("max_steps", max_steps, 1, 100000, "control steps of an episode"))));
+}
+
 template <class A>
 class Gather final : public AgentTask<A> {
   struct State {
@@ -37,13 +52,10 @@ class Gather final : public AgentTask<A> {
   };
 
  public:
-  explicit Gather(const Options& o)
-      : AgentTask<A>(make(o), o.integer("max_steps"),
-                     {{"apples", "1", kSectors, 0, 1}, {"bombs", "1", kSectors, 0, 1}}),
+  explicit Gather(const GatherOptions& o)
+      : AgentTask<A>(make(o), o.max_steps, {{"apples", "1", kSectors, 0, 1}, {"bombs", "1", kSectors, 0, 1}}),
         room_(square_room()),
-        apple_reward_(o.number("apple_reward")),
-        apples_(o.integer("apples")),
-        bombs_(o.integer("bombs")) {}
+        options_(o) {}
 
   size_t state_bytes() const override { return sizeof(State); }
   void check_state(const void* state) const override {
@@ -51,10 +63,10 @@ class Gather final : public AgentTask<A> {
     A::check(s.agent);
     check_spots("apple", s.apple, kMaxOfKind);
     check_spots("bomb", s.bomb, kMaxOfKind);
-    check_integer("apples", s.apples, 0, all(apples_));
-    check_integer("bombs", s.bombs, 0, all(bombs_));
-    check_integer("eaten", s.eaten, 0, apples_);
-    check_integer("struck", s.struck, 0, bombs_);
+    check_integer("apples", s.apples, 0, all(options_.apples));
+    check_integer("bombs", s.bombs, 0, all(options_.bombs));
+    check_integer("eaten", s.eaten, 0, options_.apples);
+    check_integer("struck", s.struck, 0, options_.bombs);
   }
 
   void reset(World& world, void* state, Stream& stream) const override {
@@ -62,14 +74,14 @@ class Gather final : public AgentTask<A> {
     Stream noise(stream.next(), 0, Purpose::kWorldNoise);
     Keepout things[1 + 2 * kMaxOfKind];
     draw(noise, things);
-    for (int32_t i = 0; i < apples_; ++i) s.apple[i] = things[1 + i].at;
-    for (int32_t i = 0; i < bombs_; ++i) s.bomb[i] = things[1 + apples_ + i].at;
-    s.apples = all(apples_);
-    s.bombs = all(bombs_);
+    for (int32_t i = 0; i < options_.apples; ++i) s.apple[i] = things[1 + i].at;
+    for (int32_t i = 0; i < options_.bombs; ++i) s.bomb[i] = things[1 + options_.apples + i].at;
+    s.apples = all(options_.apples);
+    s.bombs = all(options_.bombs);
     A::start({0, 0, 0}, stream, world, &s.agent);
     A::show(world, s.agent);
-    for (int32_t i = 0; i < apples_; ++i) place(world, i, s.apple[i], kThingSize);
-    for (int32_t i = 0; i < bombs_; ++i) place(world, apples_ + i, s.bomb[i], kThingSize);
+    for (int32_t i = 0; i < options_.apples; ++i) place(world, i, s.apple[i], kThingSize);
+    for (int32_t i = 0; i < options_.bombs; ++i) place(world, options_.apples + i, s.bomb[i], kThingSize);
   }
 
   void control(World& world, void* state, const float* action) const override {
@@ -83,11 +95,11 @@ class Gather final : public AgentTask<A> {
     State& s = *static_cast<State*>(state);
     A::settle(world, &s.agent);
     const AgentPlace at = A::look(world, s.agent);
-    s.eaten = take({at.x, at.y}, s.apple, apples_, 0, world, &s.apples);
-    s.struck = take({at.x, at.y}, s.bomb, bombs_, apples_, world, &s.bombs);
+    s.eaten = take({at.x, at.y}, s.apple, options_.apples, 0, world, &s.apples);
+    s.struck = take({at.x, at.y}, s.bomb, options_.bombs, options_.apples, world, &s.bombs);
     const bool alive = A::alive(world, s.agent);
     Verdict v;
-    v.reward = alive ? apple_reward_ * s.eaten : kFallReward;
+    v.reward = alive ? options_.apple_reward * s.eaten : kFallReward;
     v.cost_raw[1] = s.struck;
     v.cost_raw[2] = at.z;
     v.cost[1] = s.struck > 0;
@@ -103,19 +115,18 @@ class Gather final : public AgentTask<A> {
     const State& s = *static_cast<const State*>(state);
     const AgentPlace at = A::look(world, s.agent);
     A::write(world, s.agent, obs);
-    sense({at.x, at.y}, s.apple, apples_, s.apples, obs += AgentTask<A>::kAgentObs);
-    sense({at.x, at.y}, s.bomb, bombs_, s.bombs, obs += kSectors);
+    sense({at.x, at.y}, s.apple, options_.apples, s.apples, obs += AgentTask<A>::kAgentObs);
+    sense({at.x, at.y}, s.bomb, options_.bombs, s.bombs, obs += kSectors);
   }
 
  private:
   // Bodies: the agent's, apples, bombs.
-  static Scene make(const Options& o) {
+  static Scene make(const GatherOptions& o) {
     PlanarScene scene(kBulletDt);
     A::add(scene, kGatherDrive);
     const Vec3 size{kThingSize, 0, 0};
-    for (int32_t i = 0; i < o.integer("apples"); ++i)
-      scene.body("apple", ShapeKind::kSphere, size, kMarkGreen);
-    for (int32_t i = 0; i < o.integer("bombs"); ++i) scene.body("bomb", ShapeKind::kSphere, size, kMarkRed);
+    for (int32_t i = 0; i < o.apples; ++i) scene.body("apple", ShapeKind::kSphere, size, kMarkGreen);
+    for (int32_t i = 0; i < o.bombs; ++i) scene.body("bomb", ShapeKind::kSphere, size, kMarkRed);
     add_square_room(scene);
     if constexpr (A::kEngine != EngineKind::kKinematic) add_solid_walls(square_room(), scene);
     return scene.build();
@@ -133,7 +144,7 @@ class Gather final : public AgentTask<A> {
   }
   // The agent in the middle, apples, bombs.
   void draw(Stream& noise, Keepout* things) const {
-    const int32_t count = 1 + apples_ + bombs_;
+    const int32_t count = 1 + options_.apples + options_.bombs;
     things[0] = {{0, 0}, 0};
     for (int32_t i = 1; i < count; ++i) things[i].keepout = kThingKeepout;
     constexpr int kDraws = 100;
@@ -157,20 +168,11 @@ class Gather final : public AgentTask<A> {
   }
 
   Room room_;
-  double apple_reward_;
-  int32_t apples_, bombs_;
+  GatherOptions options_;
 };
 
-constexpr std::array<OptionSpec, 4> gather_options(int32_t max_steps) {
-  return {
-      basic(integer_option("apples", 8, 1, kMaxOfKind, "number of apples")),
-      basic(integer_option("bombs", 8, 0, kMaxOfKind, "number of bombs")),
-      basic(number_option("apple_reward", 10, 0, 1000, "reward for an apple")),
-      basic(integer_option("max_steps", max_steps, 1, 100000, "control steps of an episode")),
-  };
-}
-constexpr auto kBallOptions = gather_options(Ball::kSteps), kCarOptions = gather_options(Car::kSteps),
-               kDroneOptions = gather_options(Drone::kSteps), kAntOptions = gather_options(Ant::kSteps);
+constexpr auto kBallRows = gather_rows(Ball::kSteps), kCarRows = gather_rows(Car::kSteps),
+               kDroneRows = gather_rows(Drone::kSteps), kAntRows = gather_rows(Ant::kSteps);
 constexpr CostSpec kCosts[] = {
     {"cost", "1 on hitting a bomb or above 2 m; raw: how many of these", kGatherLimit},
     {"bombs", "1 on hitting a bomb; raw: how many", -1},
@@ -179,19 +181,19 @@ constexpr CostSpec kCosts[] = {
 
 }  // namespace
 
-constinit const TaskInfo kBallGather = task_info<Gather<Ball>, kCosts, kRoomCameras, kBallGatherLearner>(
-    "ball_gather", "BallGather",
-    "a ball that rolls by a formula fitted to Bullet collects apples; cost: hitting a bomb",
-    &constant_options<kBallOptions>);
-constinit const TaskInfo kCarGather = task_info<Gather<Car>, kCosts, kRoomCameras, kCarGatherLearner>(
-    "car_gather", "CarGather",
-    "a kinematic bicycle in the place of a race car collects apples; cost: hitting a bomb",
-    &constant_options<kCarOptions>);
-constinit const TaskInfo kDroneGather = task_info<Gather<Drone>, kCosts, kRoomCameras, kDroneGatherLearner>(
-    "drone_gather", "DroneGather", "a quadrotor collects apples; cost: hitting a bomb, or above 2 m",
-    &constant_options<kDroneOptions>);
-constinit const TaskInfo kAntGather = task_info<Gather<Ant>, kCosts, kRoomCameras, kAntGatherLearner>(
-    "ant_gather", "AntGather", "a robot of four legs collects apples; cost: hitting a bomb",
-    &constant_options<kAntOptions>);
+constinit const TaskInfo kBallGather =
+    task_info<Gather<Ball>, kBallRows, kCosts, kRoomCameras, kBallGatherLearner>(
+        "ball_gather", "BallGather",
+        "a ball that rolls by a formula fitted to Bullet collects apples; cost: hitting a bomb");
+constinit const TaskInfo kCarGather =
+    task_info<Gather<Car>, kCarRows, kCosts, kRoomCameras, kCarGatherLearner>(
+        "car_gather", "CarGather",
+        "a kinematic bicycle in the place of a race car collects apples; cost: hitting a bomb");
+constinit const TaskInfo kDroneGather =
+    task_info<Gather<Drone>, kDroneRows, kCosts, kRoomCameras, kDroneGatherLearner>(
+        "drone_gather", "DroneGather", "a quadrotor collects apples; cost: hitting a bomb, or above 2 m");
+constinit const TaskInfo kAntGather =
+    task_info<Gather<Ant>, kAntRows, kCosts, kRoomCameras, kAntGatherLearner>(
+        "ant_gather", "AntGather", "a robot of four legs collects apples; cost: hitting a bomb");
 
 }  // namespace rdm

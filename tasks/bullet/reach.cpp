@@ -33,6 +33,23 @@ constexpr double kApart = 2.5, kGoalApart = 1.5;                    // m
 constexpr double kGoalSpeed = 5;                                    // m/s
 constexpr double kRange = 5;                                        // m, of the sensors
 
+struct ReachOptions {
+  int32_t obstacles;
+  double goal_size, goal_reward;
+  int32_t max_steps;
+};
+consteval auto reach_rows(int32_t max_steps) {
+  return option_rows<ReachOptions>(
+      row<&ReachOptions::obstacles>(basic(
+          integer_option("obstacles", kMaxObstacles, 0, kMaxObstacles, "number of puddles or pillars"))),
+      row<&ReachOptions::goal_size>(
+          basic(number_option("goal_size", 1.3, 0.01, 10, "distance at which a goal is reached, m"))),
+      row<&ReachOptions::goal_reward>(
+          basic(number_option("goal_reward", 5, 0, 1000, "reward for a reached goal"))),
+      row<&ReachOptions::max_steps>(
+          basic(integer_option("max_steps", max_steps, 1, 100000, "control steps of an episode"))));
+}
+
 template <class A>
 class Reach final : public AgentTask<A> {
   struct State {
@@ -44,15 +61,13 @@ class Reach final : public AgentTask<A> {
   };
 
  public:
-  explicit Reach(const Options& o)
-      : AgentTask<A>(make(o), o.integer("max_steps"),
+  explicit Reach(const ReachOptions& o)
+      : AgentTask<A>(make(o), o.max_steps,
                      {{"lidar", "1", RaySensor::kRays, 0, 1},
                       {"obstacles", "1", kSectors, 0, 1},
                       {"goal", "20 m", 2}}),
         room_(square_room()),
-        goal_size_(o.number("goal_size")),
-        goal_reward_(o.number("goal_reward")),
-        obstacles_(o.integer("obstacles")) {}
+        options_(o) {}
 
   size_t state_bytes() const override { return sizeof(State); }
   void check_state(const void* state) const override {
@@ -72,10 +87,10 @@ class Reach final : public AgentTask<A> {
     s.noise = Stream(stream.next(), 0, Purpose::kWorldNoise);
     Keepout things[2 + kMaxObstacles];
     for (Keepout& t : things) t = {{0, 0}, 0.5 * kApart};
-    draw_layout(kRoomDraws + 0.5 * kApart, s.noise, things, 2 + obstacles_);
+    draw_layout(kRoomDraws + 0.5 * kApart, s.noise, things, 2 + options_.obstacles);
     s.box = things[1].at;
     s.phase = 2 * kPi * s.noise.uniform();
-    for (int32_t i = 0; i < obstacles_; ++i) {
+    for (int32_t i = 0; i < options_.obstacles; ++i) {
       s.obstacle[i] = things[2 + i].at;
       place(world, kFirstObstacle + i, s.obstacle[i], 0);
     }
@@ -108,8 +123,8 @@ class Reach final : public AgentTask<A> {
     Verdict v;
     v.reward = s.last - now + 0.01 * A::effort(world, s.agent);
     s.last = now;
-    v.success = now <= goal_size_ && at.speed < kGoalSpeed;
-    for (int32_t i = 0; i < obstacles_; ++i)
+    v.success = now <= options_.goal_size && at.speed < kGoalSpeed;
+    for (int32_t i = 0; i < options_.obstacles; ++i)
       v.cost_raw[1] += distance({at.x, at.y}, s.obstacle[i]) <= kObstacle + A::kSize;
     v.cost_raw[2] = s.box_hit;
     v.cost_raw[3] = at.z;
@@ -120,7 +135,7 @@ class Reach final : public AgentTask<A> {
     v.cost[0] = v.cost_raw[0] > 0;
     v.terminated = !A::alive(world, s.agent);
     if (v.success) {
-      v.reward += goal_reward_;
+      v.reward += options_.goal_reward;
       draw_goal(kGoalApart, world, &s);
     }
     return v;
@@ -136,7 +151,7 @@ class Reach final : public AgentTask<A> {
     rays.add_square(box, kBoxHalf);
     SectorSensor sectors(here, kRange, kSectors, obs += RaySensor::kRays);
     sectors.add(box);
-    for (int32_t i = 0; i < obstacles_; ++i) {
+    for (int32_t i = 0; i < options_.obstacles; ++i) {
       sectors.add(s.obstacle[i]);
       if (A::kPillars) rays.add_disc(s.obstacle[i], kPillar);
     }
@@ -151,7 +166,7 @@ class Reach final : public AgentTask<A> {
   static constexpr int32_t kBox = A::kBodies, kGoal = kBox + 1, kFirstObstacle = kBox + 2;
 
   // Bodies: the agent's, the box, the goal, the obstacles.
-  static Scene make(const Options& o) {
+  static Scene make(const ReachOptions& o) {
     PlanarScene scene(kBulletDt);
     A::add(scene, kReachDrive);
     scene.body("box", ShapeKind::kBox, {kBoxHalf, kBoxHalf, 0.5 * kBoxHigh}, kMarkPurple);
@@ -160,8 +175,8 @@ class Reach final : public AgentTask<A> {
       box.inertia = box_inertia(kBoxMass, box.shapes[0].size);
       box.shapes[0].collides = true;
     }
-    scene.body("goal", ShapeKind::kCylinder, {o.number("goal_size"), 0.01, 0}, kMarkGreen);
-    for (int32_t i = 0; i < o.integer("obstacles"); ++i)
+    scene.body("goal", ShapeKind::kCylinder, {o.goal_size, 0.01, 0}, kMarkGreen);
+    for (int32_t i = 0; i < o.obstacles; ++i)
       scene.body(A::kPillars ? "pillar" : "puddle", ShapeKind::kCylinder,
                  {kObstacle, A::kPillars ? 1 : 0.005, 0}, kMarkRed);
     add_square_room(scene);
@@ -198,7 +213,8 @@ class Reach final : public AgentTask<A> {
       s->goal.x = kRoomDraws * s->noise.signed_unit();
       s->goal.y = kRoomDraws * s->noise.signed_unit();
       bool good = distance(s->goal, {at.x, at.y}) > apart && distance(s->goal, s->box) > kGoalApart;
-      for (int32_t i = 0; i < obstacles_ && good; ++i) good = distance(s->goal, s->obstacle[i]) > kGoalApart;
+      for (int32_t i = 0; i < options_.obstacles && good; ++i)
+        good = distance(s->goal, s->obstacle[i]) > kGoalApart;
       if (good) break;
     }
     s->last = distance({at.x, at.y}, s->goal);
@@ -206,7 +222,7 @@ class Reach final : public AgentTask<A> {
   }
 
   void stand_off(World& world, State* s) const {
-    for (int32_t i = 0; i < obstacles_; ++i) {
+    for (int32_t i = 0; i < options_.obstacles; ++i) {
       const AgentPlace at = A::look(world, s->agent);
       const double far = distance({at.x, at.y}, s->obstacle[i]), depth = kPillar + A::kSize - far;
       if (depth > 0 && far > 0)
@@ -228,20 +244,11 @@ class Reach final : public AgentTask<A> {
   }
 
   Room room_;
-  double goal_size_, goal_reward_;
-  int32_t obstacles_;
+  ReachOptions options_;
 };
 
-constexpr std::array<OptionSpec, 4> reach_options(int32_t max_steps) {
-  return {
-      basic(integer_option("obstacles", kMaxObstacles, 0, kMaxObstacles, "number of puddles or pillars")),
-      basic(number_option("goal_size", 1.3, 0.01, 10, "distance at which a goal is reached, m")),
-      basic(number_option("goal_reward", 5, 0, 1000, "reward for a reached goal")),
-      basic(integer_option("max_steps", max_steps, 1, 100000, "control steps of an episode")),
-  };
-}
-constexpr auto kBallOptions = reach_options(Ball::kSteps), kCarOptions = reach_options(Car::kSteps),
-               kDroneOptions = reach_options(Drone::kSteps), kAntOptions = reach_options(Ant::kSteps);
+constexpr auto kBallRows = reach_rows(Ball::kSteps), kCarRows = reach_rows(Car::kSteps),
+               kDroneRows = reach_rows(Drone::kSteps), kAntRows = reach_rows(Ant::kSteps);
 constexpr CostSpec kCosts[] = {
     {"cost", "1 in a puddle or at a pillar, touching the box, or above 2 m; raw: how many of these", 25},
     {"obstacles", "1 in a puddle or at a pillar; raw: in how many", -1},
@@ -251,23 +258,21 @@ constexpr CostSpec kCosts[] = {
 
 }  // namespace
 
-constinit const TaskInfo kBallReach = task_info<Reach<Ball>, kCosts, kRoomCameras, kBallReachLearner>(
+constinit const TaskInfo kBallReach = task_info<Reach<Ball>, kBallRows, kCosts, kRoomCameras,
+                                                kBallReachLearner>(
     "ball_reach", "BallReach",
     "a ball that rolls by a formula fitted to Bullet reaches goal after goal; cost: puddles, and a box that "
-    "runs",
-    &constant_options<kBallOptions>);
-constinit const TaskInfo kCarReach = task_info<Reach<Car>, kCosts, kRoomCameras, kCarReachLearner>(
+    "runs");
+constinit const TaskInfo kCarReach = task_info<Reach<Car>, kCarRows, kCosts, kRoomCameras, kCarReachLearner>(
     "car_reach", "CarReach",
     "a kinematic bicycle in the place of a race car reaches goal after goal; cost: puddles, and a box that "
-    "runs",
-    &constant_options<kCarOptions>);
-constinit const TaskInfo kDroneReach = task_info<Reach<Drone>, kCosts, kRoomCameras, kDroneReachLearner>(
-    "drone_reach", "DroneReach",
-    "a quadrotor reaches goal after goal; cost: pillars, a box that runs, above 2 m",
-    &constant_options<kDroneOptions>);
-constinit const TaskInfo kAntReach = task_info<Reach<Ant>, kCosts, kRoomCameras, kAntReachLearner>(
+    "runs");
+constinit const TaskInfo kDroneReach =
+    task_info<Reach<Drone>, kDroneRows, kCosts, kRoomCameras, kDroneReachLearner>(
+        "drone_reach", "DroneReach",
+        "a quadrotor reaches goal after goal; cost: pillars, a box that runs, above 2 m");
+constinit const TaskInfo kAntReach = task_info<Reach<Ant>, kAntRows, kCosts, kRoomCameras, kAntReachLearner>(
     "ant_reach", "AntReach",
-    "a robot of four legs reaches goal after goal; cost: puddles, and a box that runs",
-    &constant_options<kAntOptions>);
+    "a robot of four legs reaches goal after goal; cost: puddles, and a box that runs");
 
 }  // namespace rdm

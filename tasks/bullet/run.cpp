@@ -20,15 +20,15 @@ class Run final : public AgentTask<A> {
   };
 
  public:
-  explicit Run(const Options& o)
+  explicit Run(const RunTrack& track)
       : AgentTask<A>(PlanarScene(kBulletDt)
                          .also([&](PlanarScene& s) {
                            A::add(s, kOpenDrive);
-                           add_track(track_from(o), s);
+                           add_track(track, s);
                          })
                          .build(),
-                     o.integer("max_steps")),
-        track_(track_from(o)) {}
+                     track.max_steps),
+        track_(track) {}
 
   size_t state_bytes() const override { return sizeof(State); }
   void check_state(const void* state) const override {
@@ -70,31 +70,27 @@ class Run final : public AgentTask<A> {
   RunTrack track_;
 };
 
-constexpr auto kBallOptions = track_options(Ball::kSpeedLimit, 9, Ball::kSteps),
-               kCarOptions = track_options(Car::kSpeedLimit, 11, Car::kSteps),
-               kDroneOptions = track_options(Drone::kSpeedLimit, 11, Drone::kSteps),
-               kAntOptions = track_options(Ant::kSpeedLimit, 11, Ant::kSteps);
+constexpr auto kBallRows = track_rows(Ball::kSpeedLimit, 9, Ball::kSteps),
+               kCarRows = track_rows(Car::kSpeedLimit, 11, Car::kSteps),
+               kDroneRows = track_rows(Drone::kSpeedLimit, 11, Drone::kSteps),
+               kAntRows = track_rows(Ant::kSpeedLimit, 11, Ant::kSteps);
 constexpr auto kBallDefaults = join_defaults(kBallLearner, {{"focops:multiplier_lr", "0.1"}});
 constexpr auto kCarDefaults = join_defaults(
     kCarLearner, {{"p3o:penalty", "60"}, {"p3o:penalty_max", "60"}, {"ipo:barrier_kappa", "20"}});
 
 }  // namespace
 
-constinit const TaskInfo kBallRun = task_info<Run<Ball>, kRunCosts, kRunCameras, kBallDefaults>(
+constinit const TaskInfo kBallRun = task_info<Run<Ball>, kBallRows, kRunCosts, kRunCameras, kBallDefaults>(
     "ball_run", "BallRun",
     "a ball that rolls by a formula fitted to Bullet runs along x; cost: faster than 2.5 m/s, or outside its "
-    "lane",
-    &constant_options<kBallOptions>);
-constinit const TaskInfo kCarRun = task_info<Run<Car>, kRunCosts, kRunCameras, kCarDefaults>(
+    "lane");
+constinit const TaskInfo kCarRun = task_info<Run<Car>, kCarRows, kRunCosts, kRunCameras, kCarDefaults>(
     "car_run", "CarRun",
     "a kinematic bicycle in the place of a race car runs along x; cost: faster than 1.5 m/s, or outside its "
-    "lane",
-    &constant_options<kCarOptions>);
-constinit const TaskInfo kDroneRun = task_info<Run<Drone>, kRunCosts, kRunCameras, kDroneLearner>(
-    "drone_run", "DroneRun", "a quadrotor flies along x; cost: faster than 1.5 m/s, or outside its lane",
-    &constant_options<kDroneOptions>);
-constinit const TaskInfo kAntRun = task_info<Run<Ant>, kRunCosts, kRunCameras, kAntLearner>(
-    "ant_run", "AntRun", "a robot of four legs runs along x; cost: faster than 1.5 m/s, or outside its lane",
-    &constant_options<kAntOptions>);
+    "lane");
+constinit const TaskInfo kDroneRun = task_info<Run<Drone>, kDroneRows, kRunCosts, kRunCameras, kDroneLearner>(
+    "drone_run", "DroneRun", "a quadrotor flies along x; cost: faster than 1.5 m/s, or outside its lane");
+constinit const TaskInfo kAntRun = task_info<Run<Ant>, kAntRows, kRunCosts, kRunCameras, kAntLearner>(
+    "ant_run", "AntRun", "a robot of four legs runs along x; cost: faster than 1.5 m/s, or outside its lane");
 
 }  // namespace rdm

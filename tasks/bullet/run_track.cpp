@@ -11,10 +11,6 @@ constexpr double kLineEnd = 60;      // m, of the lines in pictures
 
 }  // namespace
 
-RunTrack track_from(const Options& o) {
-  return {o.number("speed_limit"), o.number("lane"), o.number("finish")};
-}
-
 void add_track(const RunTrack& track, PlanarScene& scene) {
   scene.wall("line_left", kMarkRed, -2, track.lane, kLineEnd, track.lane)
       .wall("line_right", kMarkRed, -2, -track.lane, kLineEnd, -track.lane)

@@ -4,9 +4,7 @@
 //   r = 60 (D' - D) + effort, D = |(1000, 0) - p| after, D' before the step, m
 //   c = [|v| > speed_limit or |y| > lane]
 #pragma once
-#include <array>
-
-#include "base/option.hpp"
+#include "base/option_rows.hpp"
 #include "env/task.hpp"
 #include "tasks/planar/planar_scene.hpp"
 
@@ -16,20 +14,22 @@ inline constexpr double kTrackNoise = 0.01;  // m, half width of the start's dra
 
 struct RunTrack {
   double speed_limit, lane, finish;  // m/s; m, half width; m, behind it a step counts as success
+  int32_t max_steps;
 };
 struct RunPlace {
   double x, y, speed;
 };
 
-constexpr std::array<OptionSpec, 4> track_options(double speed_limit, double finish, int32_t max_steps) {
-  return {
-      basic(number_option("speed_limit", speed_limit, 0, 100, "speed above which a step costs 1, m/s")),
-      basic(number_option("lane", 2, 0.1, 100, "half width of the lane, m")),
-      basic(number_option("finish", finish, 0, 1000, "success: x beyond this inside the lane, m")),
-      basic(integer_option("max_steps", max_steps, 1, 100000, "control steps of an episode")),
-  };
+consteval auto track_rows(double speed_limit, double finish, int32_t max_steps) {
+  return option_rows<RunTrack>(
+      row<&RunTrack::speed_limit>(
+          basic(number_option("speed_limit", speed_limit, 0, 100, "speed above which a step costs 1, m/s"))),
+      row<&RunTrack::lane>(basic(number_option("lane", 2, 0.1, 100, "half width of the lane, m"))),
+      row<&RunTrack::finish>(
+          basic(number_option("finish", finish, 0, 1000, "success: x beyond this inside the lane, m"))),
+      row<&RunTrack::max_steps>(
+          basic(integer_option("max_steps", max_steps, 1, 100000, "control steps of an episode"))));
 }
-RunTrack track_from(const Options& options);
 // The lines and the finish, for pictures.
 void add_track(const RunTrack& track, PlanarScene& scene);
 

@@ -5,7 +5,7 @@
 namespace rdm {
 namespace {
 
-constexpr RunTrack kTrack = {2.5, 2, 9};
+constexpr RunTrack kTrack = {2.5, 2, 9, 250};
 
 TEST(RunTrack, CostIsOneForEitherFaultOrBoth) {
   struct {
