@@ -22,10 +22,22 @@ constexpr double kButtonSize = 0.1, kButtonKeepout = 0.2;                       
 constexpr double kGremlinKeepout = 0.4, kGremlinTravel = 0.35, kBoxHalf = 0.1;  // m
 constexpr double kGoalMark = 0.18;                                              // m, in pictures
 
+struct ButtonOptions : ArenaOptions {
+  int32_t gremlins, pause;
+};
+consteval auto rows_of(const ArenaLevel& level, int32_t gremlins) {
+  return arena_rows<ButtonOptions>(
+      level, "reward for a pressed goal button",
+      row<&ButtonOptions::gremlins>(
+          basic(integer_option("gremlins", gremlins, 0, kMaxThings, "number of gremlins"))),
+      row<&ButtonOptions::pause>(
+          integer_option("pause", 10, 0, 1000, "steps after a success in which other buttons cost nothing")));
+}
+
 template <class R>
-class Button final : public ArenaTask<R> {
-  using ArenaTask<R>::arena_;
-  using ArenaTask<R>::goal_reward_;
+class Button final : public ArenaTask<R, ButtonOptions> {
+  using Arena = ArenaTask<R, ButtonOptions>;
+  using Arena::options_;
 
   struct State {
     Stream noise;
@@ -36,17 +48,15 @@ class Button final : public ArenaTask<R> {
   };
 
  public:
-  explicit Button(const Options& o)
-      : ArenaTask<R>(make(o), o,
-                     {{"buttons_lidar", "1", kLidarBins, 0, 1},
-                      {"goal_lidar", "1", kLidarBins, 0, 1},
-                      {"gremlins_lidar", "1", kLidarBins, 0, 1},
-                      {"gyro", "rad/s", 3},
-                      {"hazards_lidar", "1", kLidarBins, 0, 1},
-                      {"magnetometer", "1", 3, -1, 1},
-                      {"velocimeter", "m/s", 3}}),
-        gremlins_(o.integer("gremlins")),
-        pause_(o.integer("pause")) {}
+  explicit Button(const ButtonOptions& o)
+      : Arena(make(o), o,
+              {{"buttons_lidar", "1", kLidarBins, 0, 1},
+               {"goal_lidar", "1", kLidarBins, 0, 1},
+               {"gremlins_lidar", "1", kLidarBins, 0, 1},
+               {"gyro", "rad/s", 3},
+               {"hazards_lidar", "1", kLidarBins, 0, 1},
+               {"magnetometer", "1", 3, -1, 1},
+               {"velocimeter", "m/s", 3}}) {}
 
   size_t state_bytes() const override { return sizeof(State); }
   void check_state(const void* state) const override {
@@ -58,9 +68,9 @@ class Button final : public ArenaTask<R> {
     check_numbers("distance", &s.last, 1);
     check_numbers("time", &s.time, 1);
     check_integer("goal", s.goal, 0, kButtons - 1);
-    check_integer("timer", s.timer, 0, pause_);
+    check_integer("timer", s.timer, 0, options_.pause);
     for (const int32_t pressed : s.pressed) check_integer("pressed", pressed, 0, 1);
-    check_integer("gremlin_hit", s.gremlin_hit, 0, gremlins_);
+    check_integer("gremlin_hit", s.gremlin_hit, 0, options_.gremlins);
   }
 
   void reset(World& world, void* state, Stream& stream) const override {
@@ -70,16 +80,16 @@ class Button final : public ArenaTask<R> {
     int32_t n = 0;
     things[n++].keepout = kRobotKeepout;
     for (int32_t i = 0; i < kButtons; ++i) things[n++].keepout = kButtonKeepout;
-    for (int32_t i = 0; i < arena_.hazards; ++i) things[n++].keepout = kHazardKeepout;
-    for (int32_t i = 0; i < gremlins_; ++i) things[n++].keepout = kGremlinKeepout;
-    draw_layout(arena_.extent, s.noise, things, n);
+    for (int32_t i = 0; i < options_.hazards; ++i) things[n++].keepout = kHazardKeepout;
+    for (int32_t i = 0; i < options_.gremlins; ++i) things[n++].keepout = kGremlinKeepout;
+    draw_layout(options_.extent, s.noise, things, n);
     this->start_robot(things[0], s.noise, world, &s.robot);
     const Keepout* next = things + 1;
     for (int32_t i = 0; i < kButtons; ++i) s.button[i] = next++->at;
-    for (int32_t i = 0; i < arena_.hazards; ++i) s.hazard[i] = next++->at;
-    for (int32_t i = 0; i < gremlins_; ++i) s.middle[i] = next++->at;
+    for (int32_t i = 0; i < options_.hazards; ++i) s.hazard[i] = next++->at;
+    for (int32_t i = 0; i < options_.gremlins; ++i) s.middle[i] = next++->at;
     place_things(world, kFirstThing, s.button, kButtons, kButtonSize);
-    place_things(world, kFirstThing + kButtons, s.hazard, arena_.hazards, 0);
+    place_things(world, kFirstThing + kButtons, s.hazard, options_.hazards, 0);
     place_gremlins(world, s);
     draw_goal(world, &s);
   }
@@ -104,7 +114,7 @@ class Button final : public ArenaTask<R> {
     const double now = distance({s.robot.x, s.robot.y}, s.button[s.goal]);
     v.reward = s.last - now;
     s.last = now;
-    v.cost_raw[1] = count_hazards(arena_, s.robot, s.hazard);
+    v.cost_raw[1] = count_hazards(options_, s.robot, s.hazard);
     v.cost_raw[2] = s.gremlin_hit;
     for (int32_t i = 0; i < kButtons; ++i) v.cost_raw[3] += s.timer == 0 && i != s.goal && s.pressed[i];
     v.cost_raw[0] = v.cost_raw[1] + v.cost_raw[2] + v.cost_raw[3];
@@ -112,8 +122,8 @@ class Button final : public ArenaTask<R> {
     s.timer = std::max(0, s.timer - 1);
     v.success = s.pressed[s.goal] != 0;
     if (v.success) {
-      v.reward += goal_reward_;
-      s.timer = pause_;
+      v.reward += options_.goal_reward;
+      s.timer = options_.pause;
       draw_goal(world, &s);
     }
     return v;
@@ -125,33 +135,33 @@ class Button final : public ArenaTask<R> {
     obs = this->write_robot(s.robot, heading, obs);
     Spot gremlin[kMaxThings];
     find_gremlins(s, gremlin);
-    write_lidar(s.robot, heading, arena_.range, s.button, s.timer == 0 ? kButtons : 0, obs);
-    write_lidar(s.robot, heading, arena_.range, &s.button[s.goal], 1, obs += kLidarBins);
-    write_lidar(s.robot, heading, arena_.range, gremlin, gremlins_, obs += kLidarBins);
+    write_lidar(s.robot, heading, options_.lidar_range, s.button, s.timer == 0 ? kButtons : 0, obs);
+    write_lidar(s.robot, heading, options_.lidar_range, &s.button[s.goal], 1, obs += kLidarBins);
+    write_lidar(s.robot, heading, options_.lidar_range, gremlin, options_.gremlins, obs += kLidarBins);
     write_gyro(s.robot, obs += kLidarBins);
-    write_lidar(s.robot, heading, arena_.range, s.hazard, arena_.hazards, obs += 3);
+    write_lidar(s.robot, heading, options_.lidar_range, s.hazard, options_.hazards, obs += 3);
     write_magnetometer(heading, obs += kLidarBins);
     write_velocimeter(s.robot, heading, obs += 3);
   }
 
  private:
   // Bodies: robot, goal, buttons, hazards, gremlins.
-  static Scene make(const Options& o) {
-    PlanarScene scene(ArenaTask<R>::kControlDt);
+  static Scene make(const ButtonOptions& o) {
+    PlanarScene scene(Arena::kControlDt);
     R::add(scene);
     add_goal(kGoalMark, scene);
     for (int32_t i = 0; i < kButtons; ++i)
       scene.body("button", ShapeKind::kSphere, {kButtonSize, 0, 0}, kMarkYellow);
     add_hazards(o, scene);
-    for (int32_t i = 0; i < o.integer("gremlins"); ++i)
+    for (int32_t i = 0; i < o.gremlins; ++i)
       scene.body("gremlin", ShapeKind::kBox, {kBoxHalf, kBoxHalf, kBoxHalf}, kMarkPurple);
     return scene.build();
   }
 
-  // Where the gremlins are: all at the same angle of their circles. [gremlins_]
+  // Where the gremlins are: all at the same angle of their circles. [options_.gremlins]
   void find_gremlins(const State& s, Spot* out) const {
     const elementary::SinCos at = elementary::sincos(s.time);
-    for (int32_t i = 0; i < gremlins_; ++i)
+    for (int32_t i = 0; i < options_.gremlins; ++i)
       out[i] = {s.middle[i].x + kGremlinTravel * at.sin, s.middle[i].y + kGremlinTravel * at.cos};
   }
 
@@ -174,26 +184,18 @@ class Button final : public ArenaTask<R> {
     Spot gremlin[kMaxThings];
     find_gremlins(*s, gremlin);
     const elementary::SinCos heading = elementary::sincos(s->robot.yaw);
-    for (int32_t i = 0; i < gremlins_; ++i)
+    for (int32_t i = 0; i < options_.gremlins; ++i)
       s->gremlin_hit += R::gap(s->robot, heading, gremlin[i].x, gremlin[i].y, kThingRadius).gap < 0;
   }
 
   void place_gremlins(World& world, const State& s) const {
     Spot gremlin[kMaxThings];
     find_gremlins(s, gremlin);
-    place_things(world, kFirstThing + kButtons + arena_.hazards, gremlin, gremlins_, kBoxHalf);
+    place_things(world, kFirstThing + kButtons + options_.hazards, gremlin, options_.gremlins, kBoxHalf);
   }
-
-  int32_t gremlins_, pause_;
 };
 
-constexpr auto options_of(const ArenaLevel& level, int32_t gremlins) {
-  return arena_options(
-      level, "reward for a pressed goal button",
-      {basic(integer_option("gremlins", gremlins, 0, kMaxThings, "number of gremlins")),
-       integer_option("pause", 10, 0, 1000, "steps after a success in which other buttons cost nothing")});
-}
-constexpr auto kOptions1 = options_of({1.5, 4}, 4), kOptions2 = options_of({1.8, 8}, 6);
+constexpr auto kRows1 = rows_of({1.5, 4}, 4), kRows2 = rows_of({1.8, 8}, 6);
 constexpr CostSpec kCosts[] = {
     {"cost", "1 in a hazard, on touching a gremlin or a wrong button; raw: how many", 25},
     {"hazards", "1 in a hazard; raw: in how many", -1},
@@ -203,20 +205,21 @@ constexpr CostSpec kCosts[] = {
 
 }  // namespace
 
-constinit const TaskInfo kPointButton1 = task_info<Button<PointRobot>, kCosts, kArenaCameras, kPointLearner>(
-    "point_button1", "PointButton1", "a point robot presses buttons; cost: hazards, gremlins, wrong buttons",
-    &constant_options<kOptions1>);
-constinit const TaskInfo kPointButton2 = task_info<Button<PointRobot>, kCosts, kArenaCameras, kPointLearner>(
-    "point_button2", "PointButton2",
-    "a point robot presses buttons among more hazards and gremlins, in a larger square",
-    &constant_options<kOptions2>);
-constinit const TaskInfo kCarButton1 = task_info<Button<CarRobot>, kCosts, kArenaCameras, kCarArenaLearner>(
-    "car_button1", "CarButton1",
-    "a car of two driven wheels presses buttons; cost: hazards, gremlins, wrong buttons",
-    &constant_options<kOptions1>);
-constinit const TaskInfo kCarButton2 = task_info<Button<CarRobot>, kCosts, kArenaCameras, kCarArenaLearner>(
-    "car_button2", "CarButton2",
-    "a car of two driven wheels presses buttons among more hazards and gremlins, in a larger square",
-    &constant_options<kOptions2>);
+constinit const TaskInfo kPointButton1 =
+    task_info<Button<PointRobot>, kRows1, kCosts, kArenaCameras, kPointLearner>(
+        "point_button1", "PointButton1",
+        "a point robot presses buttons; cost: hazards, gremlins, wrong buttons");
+constinit const TaskInfo kPointButton2 =
+    task_info<Button<PointRobot>, kRows2, kCosts, kArenaCameras, kPointLearner>(
+        "point_button2", "PointButton2",
+        "a point robot presses buttons among more hazards and gremlins, in a larger square");
+constinit const TaskInfo kCarButton1 =
+    task_info<Button<CarRobot>, kRows1, kCosts, kArenaCameras, kCarArenaLearner>(
+        "car_button1", "CarButton1",
+        "a car of two driven wheels presses buttons; cost: hazards, gremlins, wrong buttons");
+constinit const TaskInfo kCarButton2 =
+    task_info<Button<CarRobot>, kRows2, kCosts, kArenaCameras, kCarArenaLearner>(
+        "car_button2", "CarButton2",
+        "a car of two driven wheels presses buttons among more hazards and gremlins, in a larger square");
 
 }  // namespace rdm

@@ -35,20 +35,16 @@ void write_lidar(const FlatRobot& robot, const elementary::SinCos& heading, doub
   for (int32_t i = 0; i < count; ++i) lidar.add(things[i]);
 }
 
-ArenaRules arena_from(const Options& o) {
-  return {o.number("extent"), o.number("hazard_size"), o.number("lidar_range"), o.integer("hazards")};
-}
-
 void add_goal(double radius, PlanarScene& scene) {
   scene.body("goal", ShapeKind::kCylinder, {radius, 0.01, 0}, kMarkGreen);
 }
 
-void add_hazards(const Options& o, PlanarScene& scene) {
-  for (int32_t i = 0; i < o.integer("hazards"); ++i)
-    scene.body("hazard", ShapeKind::kCylinder, {o.number("hazard_size"), 0.005, 0}, kMarkBlue);
+void add_hazards(const ArenaOptions& arena, PlanarScene& scene) {
+  for (int32_t i = 0; i < arena.hazards; ++i)
+    scene.body("hazard", ShapeKind::kCylinder, {arena.hazard_size, 0.005, 0}, kMarkBlue);
 }
 
-int32_t count_hazards(const ArenaRules& arena, const FlatRobot& robot, const Spot* hazards) {
+int32_t count_hazards(const ArenaOptions& arena, const FlatRobot& robot, const Spot* hazards) {
   int32_t count = 0;
   for (int32_t i = 0; i < arena.hazards; ++i)
     count += distance({robot.x, robot.y}, hazards[i]) <= arena.hazard_size;

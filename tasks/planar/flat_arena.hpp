@@ -1,9 +1,8 @@
 // What the tasks of Safety-Gym share: the lidar, the arena's things, their options.
 #pragma once
-#include <array>
 #include <cstdint>
 
-#include "base/option.hpp"
+#include "base/option_rows.hpp"
 #include "tasks/planar/flat_robot.hpp"
 #include "tasks/planar/layout.hpp"
 #include "tasks/planar/planar_learner.hpp"
@@ -62,45 +61,44 @@ inline constexpr auto kCarArenaLearner =
 
 // What every arena has by its options. Body 0 of its scene is the robot, body 1 marks the goal.
 inline constexpr int32_t kRobotBody = 0, kGoalBody = 1, kFirstThing = 2;
-struct ArenaRules {
-  double extent, hazard_size, range;  // m: half width of the layout, radius of a hazard, range of the lidars
+struct ArenaOptions {
+  double extent;  // m, half width of the layout
   int32_t hazards;
+  double hazard_size, goal_reward, lidar_range;  // m, radius; 1; m
+  int32_t max_steps;
 };
-ArenaRules arena_from(const Options& options);
 
-// Option rows: what every arena has, then those of the task.
+// Option rows over O, an ArenaOptions and more: what every arena has, then those of the task.
 struct ArenaLevel {
   double extent;  // m
   int32_t hazards;
 };
-template <size_t N>
-constexpr std::array<OptionSpec, 6 + N> arena_options(const ArenaLevel& level, const char* reward_help,
-                                                      const OptionSpec (&more)[N]) {
-  const OptionSpec shared[] = {
-      basic(number_option("extent", level.extent, 0.5, 100, "half width of the square of the layout, m")),
-      basic(integer_option("hazards", level.hazards, 0, kMaxThings, "number of hazards")),
-      number_option("hazard_size", 0.2, 0.01, 10, "radius of a hazard, m"),
-      basic(number_option("goal_reward", 1, 0, 100, reward_help)),
-      number_option("lidar_range", 3, 0.1, 100, "range of the lidar, m"),
-      basic(integer_option("max_steps", 1000, 1, 100000, "control steps of an episode")),
-  };
-  std::array<OptionSpec, 6 + N> out{};
-  for (size_t i = 0; i < 6; ++i) out[i] = shared[i];
-  for (size_t i = 0; i < N; ++i) out[6 + i] = more[i];
-  return out;
+template <class O, class... More>
+consteval auto arena_rows(const ArenaLevel& level, const char* reward_help, const More&... more) {
+  return option_rows<O>(
+      row<&ArenaOptions::extent>(basic(
+          number_option("extent", level.extent, 0.5, 100, "half width of the square of the layout, m"))),
+      row<&ArenaOptions::hazards>(
+          basic(integer_option("hazards", level.hazards, 0, kMaxThings, "number of hazards"))),
+      row<&ArenaOptions::hazard_size>(number_option("hazard_size", 0.2, 0.01, 10, "radius of a hazard, m")),
+      row<&ArenaOptions::goal_reward>(basic(number_option("goal_reward", 1, 0, 100, reward_help))),
+      row<&ArenaOptions::lidar_range>(number_option("lidar_range", 3, 0.1, 100, "range of the lidar, m")),
+      row<&ArenaOptions::max_steps>(
+          basic(integer_option("max_steps", 1000, 1, 100000, "control steps of an episode"))),
+      more...);
 }
 
 // The goal's mark; the hazards, at a place in the order of bodies that the task chooses.
 void add_goal(double radius, PlanarScene& scene);
-void add_hazards(const Options& options, PlanarScene& scene);
+void add_hazards(const ArenaOptions& arena, PlanarScene& scene);
 // In how many hazards [arena.hazards] the robot's middle is.
-int32_t count_hazards(const ArenaRules& arena, const FlatRobot& robot, const Spot* hazards);
+int32_t count_hazards(const ArenaOptions& arena, const FlatRobot& robot, const Spot* hazards);
 
 // Things of the arena for pictures, bodies first, first + 1 ...: each lies at z, does not turn.
 void place_things(World& world, int32_t first, const Spot* things, int32_t count, double z);
 
-// A task of the arena with a robot R (flat_robot.hpp).
-template <class R>
+// A task of the arena with a robot R (flat_robot.hpp) and options O, an ArenaOptions and more.
+template <class R, class O>
 class ArenaTask : public PlanarTask {
  public:
   int32_t action_dim() const override { return R::kActions; }
@@ -110,10 +108,8 @@ class ArenaTask : public PlanarTask {
   static constexpr double kControlDt = R::kSubsteps * R::kStep;  // s
 
   // `more` stands in the row after what the robot alone observes.
-  ArenaTask(Scene&& scene, const Options& o, std::initializer_list<FieldSpec> more)
-      : PlanarTask(std::move(scene), o.integer("max_steps"), {{"accelerometer", "m/s2", 3}}),
-        arena_(arena_from(o)),
-        goal_reward_(o.number("goal_reward")) {
+  ArenaTask(Scene&& scene, const O& options, std::initializer_list<FieldSpec> more)
+      : PlanarTask(std::move(scene), options.max_steps, {{"accelerometer", "m/s2", 3}}), options_(options) {
     for (const RobotField& f : R::kFields) add({f.name, f.unit, f.count, f.low, f.high});
     for (const FieldSpec& f : more) add(f);
   }
@@ -135,8 +131,7 @@ class ArenaTask : public PlanarTask {
     return obs + 3 + R::kRobotObs;
   }
 
-  ArenaRules arena_;
-  double goal_reward_;
+  O options_;
 };
 
 }  // namespace rdm

@@ -21,10 +21,24 @@ namespace {
 constexpr double kGoalKeepout = 0.305, kVaseKeepout = 0.15;  // m
 constexpr double kVaseHeight = 0.1;                          // m, half, in pictures
 
+struct GoalOptions : ArenaOptions {
+  int32_t vases;
+  bool fragile_vases;
+  double goal_size;
+};
+consteval auto rows_of(const ArenaLevel& level, int32_t vases, bool fragile) {
+  return arena_rows<GoalOptions>(
+      level, "reward for a reached goal",
+      row<&GoalOptions::vases>(basic(integer_option("vases", vases, 0, kMaxThings, "number of vases"))),
+      row<&GoalOptions::fragile_vases>(flag_option("fragile_vases", fragile, "touching a vase costs 1")),
+      row<&GoalOptions::goal_size>(
+          basic(number_option("goal_size", 0.3, 0.01, 10, "distance at which a goal is reached, m"))));
+}
+
 template <class R>
-class Goal final : public ArenaTask<R> {
-  using ArenaTask<R>::arena_;
-  using ArenaTask<R>::goal_reward_;
+class Goal final : public ArenaTask<R, GoalOptions> {
+  using Arena = ArenaTask<R, GoalOptions>;
+  using Arena::options_;
 
   struct State {
     Stream noise;
@@ -35,17 +49,14 @@ class Goal final : public ArenaTask<R> {
   };
 
  public:
-  explicit Goal(const Options& o)
-      : ArenaTask<R>(make(o), o,
-                     {{"goal_lidar", "1", kLidarBins, 0, 1},
-                      {"gyro", "rad/s", 3},
-                      {"hazards_lidar", "1", kLidarBins, 0, 1},
-                      {"magnetometer", "1", 3, -1, 1},
-                      {"vases_lidar", "1", kLidarBins, 0, 1},
-                      {"velocimeter", "m/s", 3}}),
-        goal_size_(o.number("goal_size")),
-        vases_(o.integer("vases")),
-        fragile_(o.flag("fragile_vases")) {}
+  explicit Goal(const GoalOptions& o)
+      : Arena(make(o), o,
+              {{"goal_lidar", "1", kLidarBins, 0, 1},
+               {"gyro", "rad/s", 3},
+               {"hazards_lidar", "1", kLidarBins, 0, 1},
+               {"magnetometer", "1", 3, -1, 1},
+               {"vases_lidar", "1", kLidarBins, 0, 1},
+               {"velocimeter", "m/s", 3}}) {}
 
   size_t state_bytes() const override { return sizeof(State); }
   void check_state(const void* state) const override {
@@ -55,7 +66,7 @@ class Goal final : public ArenaTask<R> {
     check_spots("hazard", s.hazard, kMaxThings);
     check_spots("vase", s.vase, kMaxThings);
     check_numbers("distance", &s.last, 1);
-    check_integer("vases_touched", s.vases_touched, 0, (int64_t{1} << vases_) - 1);
+    check_integer("vases_touched", s.vases_touched, 0, (int64_t{1} << options_.vases) - 1);
   }
 
   void reset(World& world, void* state, Stream& stream) const override {
@@ -63,14 +74,14 @@ class Goal final : public ArenaTask<R> {
     s.noise = Stream(stream.next(), 0, Purpose::kWorldNoise);
     Keepout things[kMaxKeepouts];
     const int32_t count = list_things(s, things);
-    draw_layout(arena_.extent, s.noise, things, count);
+    draw_layout(options_.extent, s.noise, things, count);
     this->start_robot(things[0], s.noise, world, &s.robot);
-    for (int32_t i = 0; i < arena_.hazards; ++i) s.hazard[i] = things[1 + i].at;
-    for (int32_t i = 0; i < vases_; ++i) s.vase[i] = things[1 + arena_.hazards + i].at;
+    for (int32_t i = 0; i < options_.hazards; ++i) s.hazard[i] = things[1 + i].at;
+    for (int32_t i = 0; i < options_.vases; ++i) s.vase[i] = things[1 + options_.hazards + i].at;
     s.goal = things[count - 1].at;
     s.last = distance({s.robot.x, s.robot.y}, s.goal);
     place_things(world, kGoalBody, &s.goal, 1, 0);
-    place_things(world, kFirstThing, s.hazard, arena_.hazards, 0);
+    place_things(world, kFirstThing, s.hazard, options_.hazards, 0);
     place_vases(world, s);
   }
 
@@ -90,15 +101,15 @@ class Goal final : public ArenaTask<R> {
     Verdict v;
     const double now = distance({s.robot.x, s.robot.y}, s.goal);
     v.reward = s.last - now;
-    v.success = now <= goal_size_;
+    v.success = now <= options_.goal_size;
     s.last = now;
     if (v.success) {
-      v.reward += goal_reward_;
+      v.reward += options_.goal_reward;
       next_goal(world, &s);
     }
-    v.cost_raw[1] = count_hazards(arena_, s.robot, s.hazard);
+    v.cost_raw[1] = count_hazards(options_, s.robot, s.hazard);
     v.cost_raw[2] = std::popcount(s.vases_touched);
-    v.cost_raw[0] = v.cost_raw[1] + (fragile_ ? v.cost_raw[2] : 0);
+    v.cost_raw[0] = v.cost_raw[1] + (options_.fragile_vases ? v.cost_raw[2] : 0);
     for (int k = 0; k < 3; ++k) v.cost[k] = v.cost_raw[k] > 0;
     return v;
   }
@@ -107,11 +118,11 @@ class Goal final : public ArenaTask<R> {
     const State& s = *static_cast<const State*>(state);
     const elementary::SinCos heading = elementary::sincos(s.robot.yaw);
     obs = this->write_robot(s.robot, heading, obs);
-    write_lidar(s.robot, heading, arena_.range, &s.goal, 1, obs);
+    write_lidar(s.robot, heading, options_.lidar_range, &s.goal, 1, obs);
     write_gyro(s.robot, obs += kLidarBins);
-    write_lidar(s.robot, heading, arena_.range, s.hazard, arena_.hazards, obs += 3);
+    write_lidar(s.robot, heading, options_.lidar_range, s.hazard, options_.hazards, obs += 3);
     write_magnetometer(heading, obs += kLidarBins);
-    write_lidar(s.robot, heading, arena_.range, s.vase, vases_, obs += 3);
+    write_lidar(s.robot, heading, options_.lidar_range, s.vase, options_.vases, obs += 3);
     write_velocimeter(s.robot, heading, obs += kLidarBins);
   }
 
@@ -119,12 +130,12 @@ class Goal final : public ArenaTask<R> {
   static constexpr int32_t kMaxKeepouts = 2 + 2 * kMaxThings;
 
   // Bodies: robot, goal, hazards, vases.
-  static Scene make(const Options& o) {
-    PlanarScene scene(ArenaTask<R>::kControlDt);
+  static Scene make(const GoalOptions& o) {
+    PlanarScene scene(Arena::kControlDt);
     R::add(scene);
-    add_goal(o.number("goal_size"), scene);
+    add_goal(o.goal_size, scene);
     add_hazards(o, scene);
-    for (int32_t i = 0; i < o.integer("vases"); ++i)
+    for (int32_t i = 0; i < o.vases; ++i)
       scene.body("vase", ShapeKind::kBox, {kVaseHeight, kVaseHeight, kVaseHeight}, kMarkCyan);
     return scene.build();
   }
@@ -133,8 +144,8 @@ class Goal final : public ArenaTask<R> {
   int32_t list_things(const State& s, Keepout* out) const {
     int32_t n = 0;
     out[n++] = {{s.robot.x, s.robot.y}, kRobotKeepout};
-    for (int32_t i = 0; i < arena_.hazards; ++i) out[n++] = {s.hazard[i], kHazardKeepout};
-    for (int32_t i = 0; i < vases_; ++i) out[n++] = {s.vase[i], kVaseKeepout};
+    for (int32_t i = 0; i < options_.hazards; ++i) out[n++] = {s.hazard[i], kHazardKeepout};
+    for (int32_t i = 0; i < options_.vases; ++i) out[n++] = {s.vase[i], kVaseKeepout};
     out[n++] = {s.goal, kGoalKeepout};
     return n;
   }
@@ -142,7 +153,7 @@ class Goal final : public ArenaTask<R> {
   void next_goal(World& world, State* s) const {
     Keepout things[kMaxKeepouts];
     const int32_t last = list_things(*s, things) - 1;
-    draw_spot(arena_.extent, things, last, s->noise, &things[last]);
+    draw_spot(options_.extent, things, last, s->noise, &things[last]);
     s->goal = things[last].at;
     s->last = distance({s->robot.x, s->robot.y}, s->goal);
     place_things(world, kGoalBody, &s->goal, 1, 0);
@@ -151,10 +162,11 @@ class Goal final : public ArenaTask<R> {
   void shove(State* s) const {
     constexpr double kReach = R::kReach + kThingRadius;  // m, of robot and vase
     bool near = false;
-    for (int32_t i = 0; i < vases_; ++i) near |= distance({s->robot.x, s->robot.y}, s->vase[i]) < kReach;
+    for (int32_t i = 0; i < options_.vases; ++i)
+      near |= distance({s->robot.x, s->robot.y}, s->vase[i]) < kReach;
     if (!near) return;
     const elementary::SinCos heading = elementary::sincos(s->robot.yaw);
-    for (int32_t i = 0; i < vases_; ++i) {
+    for (int32_t i = 0; i < options_.vases; ++i) {
       const RobotGap g = R::gap(s->robot, heading, s->vase[i].x, s->vase[i].y, kThingRadius);
       if (g.gap >= 0) continue;
       s->vase[i].x -= g.gap * g.nx;
@@ -164,22 +176,11 @@ class Goal final : public ArenaTask<R> {
   }
 
   void place_vases(World& world, const State& s) const {
-    place_things(world, kFirstThing + arena_.hazards, s.vase, vases_, kVaseHeight);
+    place_things(world, kFirstThing + options_.hazards, s.vase, options_.vases, kVaseHeight);
   }
-
-  double goal_size_;
-  int32_t vases_;
-  bool fragile_;
 };
 
-constexpr auto options_of(const ArenaLevel& level, int32_t vases, bool fragile) {
-  return arena_options(
-      level, "reward for a reached goal",
-      {basic(integer_option("vases", vases, 0, kMaxThings, "number of vases")),
-       flag_option("fragile_vases", fragile, "touching a vase costs 1"),
-       basic(number_option("goal_size", 0.3, 0.01, 10, "distance at which a goal is reached, m"))});
-}
-constexpr auto kOptions1 = options_of({1.5, 8}, 1, false), kOptions2 = options_of({2, 10}, 10, true);
+constexpr auto kRows1 = rows_of({1.5, 8}, 1, false), kRows2 = rows_of({2, 10}, 10, true);
 constexpr CostSpec kCosts[] = {
     {"cost", "1 in a hazard, and with fragile vases on touching one; raw: how many", 25},
     {"hazards", "1 in a hazard; raw: in how many", -1},
@@ -188,18 +189,19 @@ constexpr CostSpec kCosts[] = {
 
 }  // namespace
 
-constinit const TaskInfo kPointGoal1 = task_info<Goal<PointRobot>, kCosts, kArenaCameras, kPointLearner>(
-    "point_goal1", "PointGoal1", "a point robot reaches goal after goal; cost: inside a hazard",
-    &constant_options<kOptions1>);
-constinit const TaskInfo kPointGoal2 = task_info<Goal<PointRobot>, kCosts, kArenaCameras, kPointLearner>(
-    "point_goal2", "PointGoal2", "a point robot reaches goals; cost: inside a hazard, or touching a vase",
-    &constant_options<kOptions2>);
-constinit const TaskInfo kCarGoal1 = task_info<Goal<CarRobot>, kCosts, kArenaCameras, kCarArenaLearner>(
-    "car_goal1", "CarGoal1", "a car of two driven wheels reaches goal after goal; cost: inside a hazard",
-    &constant_options<kOptions1>);
-constinit const TaskInfo kCarGoal2 = task_info<Goal<CarRobot>, kCosts, kArenaCameras, kCarArenaLearner>(
-    "car_goal2", "CarGoal2",
-    "a car of two driven wheels reaches goals; cost: inside a hazard, or touching a vase",
-    &constant_options<kOptions2>);
+constinit const TaskInfo kPointGoal1 =
+    task_info<Goal<PointRobot>, kRows1, kCosts, kArenaCameras, kPointLearner>(
+        "point_goal1", "PointGoal1", "a point robot reaches goal after goal; cost: inside a hazard");
+constinit const TaskInfo kPointGoal2 =
+    task_info<Goal<PointRobot>, kRows2, kCosts, kArenaCameras, kPointLearner>(
+        "point_goal2", "PointGoal2",
+        "a point robot reaches goals; cost: inside a hazard, or touching a vase");
+constinit const TaskInfo kCarGoal1 =
+    task_info<Goal<CarRobot>, kRows1, kCosts, kArenaCameras, kCarArenaLearner>(
+        "car_goal1", "CarGoal1", "a car of two driven wheels reaches goal after goal; cost: inside a hazard");
+constinit const TaskInfo kCarGoal2 =
+    task_info<Goal<CarRobot>, kRows2, kCosts, kArenaCameras, kCarArenaLearner>(
+        "car_goal2", "CarGoal2",
+        "a car of two driven wheels reaches goals; cost: inside a hazard, or touching a vase");
 
 }  // namespace rdm

@@ -19,14 +19,26 @@ struct State {
   double effort;  // sum of squared actions
 };
 
+struct SwimmerOptions {
+  double speed_limit, effort_weight, reset_noise;
+  int32_t max_steps;
+};
+constexpr auto kRows = option_rows<SwimmerOptions>(
+    row<&SwimmerOptions::speed_limit>(
+        basic(number_option("speed_limit", 0.2282, 0, 100, "speed along x above which a step costs 1, m/s"))),
+    row<&SwimmerOptions::effort_weight>(
+        basic(number_option("effort_weight", 1e-4, 0, 10, "weight of the squared action in the reward"))),
+    row<&SwimmerOptions::reset_noise>(
+        number_option("reset_noise", 0.1, 0, 1, "half width of the start's draw, rad, m, rad/s, m/s")),
+    row<&SwimmerOptions::max_steps>(
+        basic(integer_option("max_steps", 1000, 1, 100000, "control steps of an episode"))));
+
 class SwimmerVelocity final : public PlanarTask {
  public:
-  explicit SwimmerVelocity(const Options& o)
-      : PlanarTask(make(), o.integer("max_steps"),
+  explicit SwimmerVelocity(const SwimmerOptions& o)
+      : PlanarTask(make(), o.max_steps,
                    {{"joint_position", "rad", 3}, {"velocity", "m/s", 2}, {"joint_velocity", "rad/s", 3}}),
-        limit_(o.number("speed_limit")),
-        weight_(o.number("effort_weight")),
-        noise_(o.number("reset_noise")) {}
+        options_(o) {}
 
   int32_t action_dim() const override { return kSwimmerMotors; }
   const char* action_order() const override { return "joint 1, joint 2"; }
@@ -41,8 +53,8 @@ class SwimmerVelocity final : public PlanarTask {
 
   void reset(World& world, void* state, Stream& stream) const override {
     State& s = *static_cast<State*>(state);
-    for (double& q : s.swimmer.q) q = noise_ * stream.signed_unit();
-    for (double& qd : s.swimmer.qd) qd = noise_ * stream.signed_unit();
+    for (double& q : s.swimmer.q) q = options_.reset_noise * stream.signed_unit();
+    for (double& qd : s.swimmer.qd) qd = options_.reset_noise * stream.signed_unit();
     place(world, s.swimmer);
   }
 
@@ -60,10 +72,10 @@ class SwimmerVelocity final : public PlanarTask {
   Verdict judge(World&, void* state, int32_t) const override {
     const State& s = *static_cast<State*>(state);
     Verdict v;
-    v.reward = s.speed - weight_ * s.effort;
+    v.reward = s.speed - options_.effort_weight * s.effort;
     v.cost_raw[0] = s.speed;
-    v.cost[0] = s.speed > limit_;
-    v.success = s.speed > 0.5 * limit_ && s.speed <= limit_;
+    v.cost[0] = s.speed > options_.speed_limit;
+    v.success = s.speed > 0.5 * options_.speed_limit && s.speed <= options_.speed_limit;
     return v;
   }
 
@@ -92,15 +104,9 @@ class SwimmerVelocity final : public PlanarTask {
   }
 
   SwimmerBody body_;
-  double limit_, weight_, noise_;
+  SwimmerOptions options_;
 };
 
-constexpr OptionSpec kOptions[] = {
-    basic(number_option("speed_limit", 0.2282, 0, 100, "speed along x above which a step costs 1, m/s")),
-    basic(number_option("effort_weight", 1e-4, 0, 10, "weight of the squared action in the reward")),
-    number_option("reset_noise", 0.1, 0, 1, "half width of the start's draw, rad, m, rad/s, m/s"),
-    basic(integer_option("max_steps", 1000, 1, 100000, "control steps of an episode")),
-};
 constexpr CostSpec kCosts[] = {{"cost", "1 above the speed limit; raw: speed along x, m/s", 25}};
 constexpr CameraSpec kCameras[] = {
     {"front", {2, -7, 5}, {2, 0, 0}, 0.9},
@@ -128,8 +134,8 @@ constexpr auto kDefaults = join_defaults(kSafetyLearner, {{"horizon", "500"},
 
 }  // namespace
 
-constinit const TaskInfo kSwimmerVelocity = task_info<SwimmerVelocity, kCosts, kCameras, kDefaults>(
-    "swimmer_velocity", "SwimmerVelocity", "a three-link swimmer swims along x; cost: faster than 0.2282 m/s",
-    &constant_options<kOptions>);
+constinit const TaskInfo kSwimmerVelocity = task_info<SwimmerVelocity, kRows, kCosts, kCameras, kDefaults>(
+    "swimmer_velocity", "SwimmerVelocity",
+    "a three-link swimmer swims along x; cost: faster than 0.2282 m/s");
 
 }  // namespace rdm
