@@ -20,12 +20,7 @@ constexpr std::array<LearnerDefault, N + M> join_defaults(const std::array<Learn
   return out;
 }
 
-// TaskInfo::options of a constant array, and of a table that `fill` makes at the first call.
-template <const auto& kRows>
-const OptionSpec* constant_options(int32_t* count, OptionTable*) {
-  *count = static_cast<int32_t>(std::size(kRows));
-  return std::data(kRows);
-}
+// TaskInfo::options of a table that `fill` makes at the first call.
 template <void (*fill)(OptionTable&)>
 const OptionSpec* filled_options(int32_t* count, OptionTable* chosen) {
   if (chosen) {
@@ -72,11 +67,16 @@ constexpr TaskInfo task_info(const char* name, const char* alias, const char* su
 // A T is made from what a list of rows (option_rows.hpp) reads.
 template <class T, const auto& kRows, const auto& kCosts, const auto& kCameras, const auto& kDefaults>
 constexpr TaskInfo task_info(const char* name, const char* alias, const char* summary) {
-  return task_row<T, kCosts, kCameras, kDefaults>(name, alias, summary, &constant_options<kRows>,
-                                                  [](const Options& o, const HostHooks& hooks) -> Task* {
-                                                    const HostScope scope(hooks);
-                                                    return host_new<T>(hooks, kRows.read(o));
-                                                  });
+  return task_row<T, kCosts, kCameras, kDefaults>(
+      name, alias, summary,
+      [](int32_t* count, OptionTable*) -> const OptionSpec* {
+        *count = static_cast<int32_t>(kRows.size());
+        return kRows.specs;
+      },
+      [](const Options& o, const HostHooks& hooks) -> Task* {
+        const HostScope scope(hooks);
+        return host_new<T>(hooks, kRows.read(o));
+      });
 }
 
 }  // namespace rdm

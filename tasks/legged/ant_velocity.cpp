@@ -38,10 +38,31 @@ struct State {
   float force[kForces];  // torque, force of each body, cut at +-1
 };
 
+struct AntOptions {
+  double speed_limit, effort_weight, contact_weight, healthy_reward, reset_noise;
+  int32_t max_steps;
+  bool own_order;
+};
+constexpr auto kRows = option_rows<AntOptions>(
+    row<&AntOptions::speed_limit>(basic(
+        number_option("speed_limit", 2.6222, 0, 100, "speed in the plane above which a step costs 1, m/s"))),
+    row<&AntOptions::effort_weight>(
+        basic(number_option("effort_weight", 0.5, 0, 10, "weight of the squared action in the reward"))),
+    row<&AntOptions::contact_weight>(
+        number_option("contact_weight", 5e-4, 0, 10, "weight of the squared contact forces in the reward")),
+    row<&AntOptions::healthy_reward>(
+        basic(number_option("healthy_reward", 1, 0, 100, "reward of each step"))),
+    row<&AntOptions::reset_noise>(
+        number_option("reset_noise", 0.1, 0, 0.2, "of the start's draw: uniform in places, normal in rates")),
+    row<&AntOptions::max_steps>(
+        basic(integer_option("max_steps", 1000, 1, 100000, "control steps of an episode"))),
+    row<&AntOptions::own_order, false, true>(
+        legacy(text_option("order", "gymnasium", "gymnasium|redman", "of actions and contact rows"))));
+
 class AntVelocity final : public PlanarTask {
  public:
-  explicit AntVelocity(const Options& o)
-      : PlanarTask(make(), o.integer("max_steps"),
+  explicit AntVelocity(const AntOptions& o)
+      : PlanarTask(make(), o.max_steps,
                    {{"height", "m", 1},
                     {"rotation", "1", 4, -1, 1},
                     {"joint_position", "rad", kAntJoints},
@@ -49,16 +70,11 @@ class AntVelocity final : public PlanarTask {
                     {"spin", "rad/s", 3},
                     {"joint_velocity", "rad/s", kAntJoints},
                     {"contact_force", "1", kForces, -1, 1}}),
-        limit_(o.number("speed_limit")),
-        effort_weight_(o.number("effort_weight")),
-        contact_weight_(o.number("contact_weight")),
-        healthy_reward_(o.number("healthy_reward")),
-        noise_(o.number("reset_noise")),
-        own_order_(same_name(o.text("order"), "redman")) {}
+        options_(o) {}
 
   EngineKind engine() const override { return EngineKind::kArticulated; }
   int32_t action_dim() const override { return kAntJoints; }
-  const char* action_order() const override { return own_order_ ? kAntOrder : kGymnasiumOrder; }
+  const char* action_order() const override { return options_.own_order ? kAntOrder : kGymnasiumOrder; }
   size_t state_bytes() const override { return sizeof(State); }
   void check_state(const void* state) const override {
     const State& s = *static_cast<const State*>(state);
@@ -71,12 +87,12 @@ class AntVelocity final : public PlanarTask {
     Pose X{{0, 0, kAntHeight}, {}};
     double q[kAntJoints], qd[kAntJoints];
     float rates[6 + kAntJoints];
-    const auto noise = [&] { return noise_ * stream.signed_unit(); };
+    const auto noise = [&] { return options_.reset_noise * stream.signed_unit(); };
     X.p = X.p + Vec3{noise(), noise(), noise()};
     X.q = normalized(Quat{1 + noise(), noise(), noise(), noise()});
     for (int32_t i = 0; i < kAntJoints; ++i) q[i] = (i % 2 == 0 ? 0 : kBent * ankle_side(i / 2)) + noise();
     stream.normals(rates, 6 + kAntJoints);
-    const auto rate = [&](int32_t i) { return noise_ * static_cast<double>(rates[i]); };
+    const auto rate = [&](int32_t i) { return options_.reset_noise * static_cast<double>(rates[i]); };
     for (int32_t i = 0; i < kAntJoints; ++i) qd[i] = rate(6 + i);
     set_ant(world, X, {rate(0), rate(1), rate(2)}, rotate(X.q, {rate(3), rate(4), rate(5)}), q, qd);
     *static_cast<State*>(state) = {};
@@ -90,7 +106,8 @@ class AntVelocity final : public PlanarTask {
     for (int32_t i = 0; i < kAntJoints; ++i)
       s.effort += static_cast<double>(action[i]) * static_cast<double>(action[i]);
     float in_order[kAntJoints];
-    for (int32_t i = 0; i < kAntJoints; ++i) in_order[i] = action[own_order_ ? i : (i + 2) % kAntJoints];
+    for (int32_t i = 0; i < kAntJoints; ++i)
+      in_order[i] = action[options_.own_order ? i : (i + 2) % kAntJoints];
     drive_ant(world, in_order, kRange.gear);
   }
 
@@ -101,10 +118,11 @@ class AntVelocity final : public PlanarTask {
     const double speed = std::sqrt(vx * vx + vy * vy), contact = feel(world, &s);
     const bool healthy = at.z > kLowest && at.z < kHighest;
     Verdict v;
-    v.reward = vx + healthy_reward_ * healthy - effort_weight_ * s.effort - contact_weight_ * contact;
+    v.reward = vx + options_.healthy_reward * healthy - options_.effort_weight * s.effort -
+               options_.contact_weight * contact;
     v.cost_raw[0] = speed;
-    v.cost[0] = speed > limit_;
-    v.success = healthy && vx > 0.5 * limit_ && speed <= limit_;
+    v.cost[0] = speed > options_.speed_limit;
+    v.success = healthy && vx > 0.5 * options_.speed_limit && speed <= options_.speed_limit;
     v.terminated = !healthy;
     return v;
   }
@@ -136,16 +154,16 @@ class AntVelocity final : public PlanarTask {
   // Sums the contacts of the last substep by body, cuts them; the sum of their squares.
   double feel(const World& world, State* s) const {
     double sum[kForces] = {};
-    const Vec3 middle = own_order_ ? Vec3{} : centre_of_mass(world);
+    const Vec3 middle = options_.own_order ? Vec3{} : centre_of_mass(world);
     const auto join = [&](int32_t shape, const Vec3& p, const Vec3& force) {
       const SceneShape& at = scene().shapes[static_cast<size_t>(shape)];
       int32_t body = std::max(0, ant_body(at));
-      if (!own_order_ && body == 0) return;
-      if (own_order_ && at.carrier == Carrier::kBase) body = 1;
-      const Vec3 origin = !own_order_ ? middle
-                          : body == 0 ? Vec3{}
-                          : body == 1 ? world.base(0).X.p
-                                      : world.link(at.index).X.p;
+      if (!options_.own_order && body == 0) return;
+      if (options_.own_order && at.carrier == Carrier::kBase) body = 1;
+      const Vec3 origin = !options_.own_order ? middle
+                          : body == 0         ? Vec3{}
+                          : body == 1         ? world.base(0).X.p
+                                              : world.link(at.index).X.p;
       const Vec3 torque = cross(p - origin, force);
       for (int k = 0; k < 3; ++k) {
         sum[6 * body + k] += torque[k];
@@ -178,19 +196,9 @@ class AntVelocity final : public PlanarTask {
     return (1 / mass) * sum;
   }
 
-  double limit_, effort_weight_, contact_weight_, healthy_reward_, noise_;
-  bool own_order_;
+  AntOptions options_;
 };
 
-constexpr OptionSpec kOptions[] = {
-    basic(number_option("speed_limit", 2.6222, 0, 100, "speed in the plane above which a step costs 1, m/s")),
-    basic(number_option("effort_weight", 0.5, 0, 10, "weight of the squared action in the reward")),
-    number_option("contact_weight", 5e-4, 0, 10, "weight of the squared contact forces in the reward"),
-    basic(number_option("healthy_reward", 1, 0, 100, "reward of each step")),
-    number_option("reset_noise", 0.1, 0, 0.2, "of the start's draw: uniform in places, normal in rates"),
-    basic(integer_option("max_steps", 1000, 1, 100000, "control steps of an episode")),
-    legacy(text_option("order", "gymnasium", "gymnasium|redman", "of actions and contact rows")),
-};
 constexpr CostSpec kCosts[] = {{"cost", "1 above the speed limit; raw: speed in the plane, m/s", 25}};
 constexpr CameraSpec kCameras[] = {
     {"front", {2, -6, 3}, {2, 0, 0.4}, 0.9},
@@ -199,8 +207,7 @@ constexpr CameraSpec kCameras[] = {
 
 }  // namespace
 
-constinit const TaskInfo kAntVelocity = task_info<AntVelocity, kCosts, kCameras, kLeggedLearner>(
-    "ant_velocity", "AntVelocity", "a robot of four legs walks along x; cost: faster than 2.6222 m/s",
-    &constant_options<kOptions>);
+constinit const TaskInfo kAntVelocity = task_info<AntVelocity, kRows, kCosts, kCameras, kLeggedLearner>(
+    "ant_velocity", "AntVelocity", "a robot of four legs walks along x; cost: faster than 2.6222 m/s");
 
 }  // namespace rdm

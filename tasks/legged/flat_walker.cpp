@@ -52,15 +52,12 @@ void add_flat_leg(const FlatLeg& f, PlanarScene& scene) {
               first + 2, &robot);
 }
 
-FlatWalker::FlatWalker(Scene&& scene, const Options& o, const FlatLimits& limits, const char* order)
-    : PlanarTask(std::move(scene), o.integer("max_steps"), {}),
+FlatWalker::FlatWalker(Scene&& scene, const FlatOptions& o, const FlatLimits& limits, const char* order)
+    : PlanarTask(std::move(scene), o.max_steps, {}),
       limits_(limits),
       order_(order),
       motors_(this->scene().num_links - kFlatRoot),
-      speed_limit_(o.number("speed_limit")),
-      effort_weight_(o.number("effort_weight")),
-      healthy_reward_(o.number("healthy_reward")),
-      noise_(o.number("reset_noise")) {
+      options_(o) {
   const auto cut = static_cast<float>(kRateCut);
   add({"height", "m", 1});
   add({"tilt", "rad", 1});
@@ -83,8 +80,8 @@ void FlatWalker::check_state(const void* state) const {
 void FlatWalker::reset(World& world, void* state, Stream& stream) const {
   double q[kFlatRoot + kMaxFlatMotors], qd[kFlatRoot + kMaxFlatMotors];
   const int32_t n = scene().num_links;
-  for (int32_t i = 0; i < n; ++i) q[i] = noise_ * stream.signed_unit();
-  for (int32_t i = 0; i < n; ++i) qd[i] = noise_ * stream.signed_unit();
+  for (int32_t i = 0; i < n; ++i) q[i] = options_.reset_noise * stream.signed_unit();
+  for (int32_t i = 0; i < n; ++i) qd[i] = options_.reset_noise * stream.signed_unit();
   world.set_joints(0, q, qd);
   std::fill_n(world.feedforward(), n, 0.0);
   *static_cast<State*>(state) = {};
@@ -112,10 +109,10 @@ Verdict FlatWalker::judge(World& world, void* state, int32_t) const {
   const bool healthy =
       z > limits_.lowest && z < limits_.highest && std::fabs(q[2]) < limits_.tilt && most < limits_.state;
   Verdict v;
-  v.reward = s.speed + healthy_reward_ * healthy - effort_weight_ * s.effort;
+  v.reward = s.speed + options_.healthy_reward * healthy - options_.effort_weight * s.effort;
   v.cost_raw[0] = s.speed;
-  v.cost[0] = s.speed > speed_limit_;
-  v.success = healthy && s.speed > 0.5 * speed_limit_ && s.speed <= speed_limit_;
+  v.cost[0] = s.speed > options_.speed_limit;
+  v.success = healthy && s.speed > 0.5 * options_.speed_limit && s.speed <= options_.speed_limit;
   v.terminated = !healthy;
   return v;
 }

@@ -7,9 +7,7 @@
 // The episode ends when the torso is lower, higher or turned further than it may be. Observed are all joint
 // coordinates but x, then all rates, cut at +-10. walker_scene.hpp says what differs from MuJoCo.
 #pragma once
-#include <array>
-
-#include "base/option.hpp"
+#include "base/option_rows.hpp"
 #include "tasks/legged/walker_scene.hpp"
 
 namespace rdm {
@@ -22,6 +20,24 @@ struct FlatLimits {
   double lowest, highest, tilt;  // m, m, rad
   double state;                  // of any coordinate but x, and any rate
 };
+
+struct FlatOptions {
+  double speed_limit, effort_weight, healthy_reward, reset_noise;
+  int32_t max_steps;
+};
+consteval auto flat_rows(double speed_limit) {
+  return option_rows<FlatOptions>(
+      row<&FlatOptions::speed_limit>(basic(number_option("speed_limit", speed_limit, 0, 100,
+                                                         "speed along x above which a step costs 1, m/s"))),
+      row<&FlatOptions::effort_weight>(
+          basic(number_option("effort_weight", 1e-3, 0, 10, "weight of the squared action in the reward"))),
+      row<&FlatOptions::healthy_reward>(
+          basic(number_option("healthy_reward", 1, 0, 100, "reward of each step"))),
+      row<&FlatOptions::reset_noise>(
+          number_option("reset_noise", 5e-3, 0, 0.1, "half width of the start's draw, rad, m, rad/s, m/s")),
+      row<&FlatOptions::max_steps>(
+          basic(integer_option("max_steps", 1000, 1, 100000, "control steps of an episode"))));
+}
 
 class FlatWalker : public PlanarTask {
  public:
@@ -37,13 +53,13 @@ class FlatWalker : public PlanarTask {
 
  protected:
   // `order` names the motors, static; motor i moves link kFlatRoot + i.
-  FlatWalker(Scene&& scene, const Options& options, const FlatLimits& limits, const char* order);
+  FlatWalker(Scene&& scene, const FlatOptions& options, const FlatLimits& limits, const char* order);
 
  private:
   FlatLimits limits_;
   const char* order_;
   int32_t motors_;
-  double speed_limit_, effort_weight_, healthy_reward_, noise_;
+  FlatOptions options_;
 };
 
 // A scene with the root joints and the torso; legs are added to its articulation 0.
@@ -57,16 +73,6 @@ struct FlatLeg {
 };
 void add_flat_leg(const FlatLeg& leg, PlanarScene& scene);
 
-constexpr std::array<OptionSpec, 5> flat_walker_options(double speed_limit) {
-  return {
-      basic(
-          number_option("speed_limit", speed_limit, 0, 100, "speed along x above which a step costs 1, m/s")),
-      basic(number_option("effort_weight", 1e-3, 0, 10, "weight of the squared action in the reward")),
-      basic(number_option("healthy_reward", 1, 0, 100, "reward of each step")),
-      number_option("reset_noise", 5e-3, 0, 0.1, "half width of the start's draw, rad, m, rad/s, m/s"),
-      basic(integer_option("max_steps", 1000, 1, 100000, "control steps of an episode")),
-  };
-}
 inline constexpr CostSpec kFlatCosts[] = {{"cost", "1 above the speed limit; raw: speed along x, m/s", 25}};
 inline constexpr CameraSpec kFlatCameras[] = {
     {"front", {2, -6, 1.8}, {2, 0, 0.8}, 0.9},

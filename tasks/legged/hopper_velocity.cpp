@@ -15,7 +15,7 @@ constexpr FlatLeg kLeg{"thigh", "leg", "foot", -0.13, 0.26, 1, 1, 200, kFootMate
 
 class HopperVelocity final : public FlatWalker {
  public:
-  explicit HopperVelocity(const Options& o)
+  explicit HopperVelocity(const FlatOptions& o)
       : FlatWalker(make(), o, {0.7, HUGE_VAL, 0.2, 100}, "thigh, leg, foot") {}
 
  private:
@@ -27,13 +27,12 @@ class HopperVelocity final : public FlatWalker {
   }
 };
 
-constexpr auto kOptions = flat_walker_options(0.7402);
+constexpr auto kRows = flat_rows(0.7402);
 
 }  // namespace
 
 constinit const TaskInfo kHopperVelocity =
-    task_info<HopperVelocity, kFlatCosts, kFlatCameras, kLeggedLearner>(
-        "hopper_velocity", "HopperVelocity", "a one-legged robot hops along x; cost: faster than 0.7402 m/s",
-        &constant_options<kOptions>);
+    task_info<HopperVelocity, kRows, kFlatCosts, kFlatCameras, kLeggedLearner>(
+        "hopper_velocity", "HopperVelocity", "a one-legged robot hops along x; cost: faster than 0.7402 m/s");
 
 }  // namespace rdm

@@ -16,7 +16,7 @@ constexpr FlatLeg kRight{"thigh", "leg", "foot", 0, 0.2, 0.1, 0.01, 100, kLimbMa
 
 class Walker2dVelocity final : public FlatWalker {
  public:
-  explicit Walker2dVelocity(const Options& o)
+  explicit Walker2dVelocity(const FlatOptions& o)
       : FlatWalker(make(), o, {0.8, 2, 1, HUGE_VAL}, "thigh, leg, foot, left thigh, left leg, left foot") {}
 
  private:
@@ -29,13 +29,13 @@ class Walker2dVelocity final : public FlatWalker {
   }
 };
 
-constexpr auto kOptions = flat_walker_options(2.3415);
+constexpr auto kRows = flat_rows(2.3415);
 
 }  // namespace
 
 constinit const TaskInfo kWalker2dVelocity =
-    task_info<Walker2dVelocity, kFlatCosts, kFlatCameras, kLeggedLearner>(
+    task_info<Walker2dVelocity, kRows, kFlatCosts, kFlatCameras, kLeggedLearner>(
         "walker2d_velocity", "Walker2dVelocity",
-        "a robot of two legs walks along x; cost: faster than 2.3415 m/s", &constant_options<kOptions>);
+        "a robot of two legs walks along x; cost: faster than 2.3415 m/s");
 
 }  // namespace rdm
