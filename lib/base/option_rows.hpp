@@ -100,6 +100,10 @@ struct OptionRows {
     return out;
   }
 
+  template <auto kMember>
+  constexpr const OptionSpec& of() const {
+    return specs[index_of<kMember>()];
+  }
   // The list with another default for a member: of a number, integer or flag, and of a text.
   template <auto kMember>
   constexpr OptionRows with(double number) const {

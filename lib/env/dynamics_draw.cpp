@@ -7,13 +7,14 @@
 namespace rdm {
 namespace {
 
-constexpr OptionSpec kRows[] = {
-    basic(integer_option(
-        "level", 0, 0, 3,
-        "masses, gains, efforts, damping and friction that are drawn for each world at a reset: "
-        "within 0, 10, "
-        "20 or 30 % of what they are, but for options that are given")),
+struct LevelOptions {
+  int32_t level;
 };
+constexpr auto kRows = row<&LevelOptions::level>(basic(
+    integer_option("level", 0, 0, 3,
+                   "masses, gains, efforts, damping and friction that are drawn for each world at a reset: "
+                   "within 0, 10, "
+                   "20 or 30 % of what they are, but for options that are given")));
 constexpr double kSpread[] = {0, 0.1, 0.2, 0.3};
 constexpr const char* kLevelled[] = {"scale.mass",
                                      "scale.kp",
@@ -34,7 +35,7 @@ bool levelled(const char* key) {
 // level, a factor about 1.
 OptionRange factor_of(const Options& o, const char* key) {
   if (!o.given(key)) {
-    const double spread = levelled(key) && o.knows("level") ? kSpread[o.integer("level")] : 0;
+    const double spread = levelled(key) && o.knows(kRows.specs[0].key) ? kSpread[kRows.read(o).level] : 0;
     return {1 - spread, 1 + spread};
   }
   const OptionRange range = o.range(key);
@@ -51,18 +52,20 @@ void add_level_options(OptionTable& table) {
   table.add(kRows);
 }
 
-void DynamicsDraws::add(const Options& options, const char* key, Drawn what, int32_t first, int32_t count) {
-  const OptionRange factor = factor_of(options, key);
-  if (!factor.drawn()) return;
-  const OptionSpec* spec = options.spec_of(key);
+DrawnOption drawn_option(const Options& options, const char* key) {
+  return {options.range(key).middle(), factor_of(options, key), options.spec_of(key)};
+}
+
+void DynamicsDraws::add(const DrawnOption& option, Drawn what, int32_t first, int32_t count) {
+  if (!option.factor.drawn()) return;
   // Rows of one option share its draw: all links of a hand are heavier together.
-  const auto at = std::find(specs_.begin(), specs_.end(), spec);
-  const auto option = static_cast<int32_t>(at - specs_.begin());
+  const auto at = std::find(specs_.begin(), specs_.end(), option.spec);
+  const auto i = static_cast<int32_t>(at - specs_.begin());
   if (at == specs_.end()) {
-    specs_.push_back(spec);
-    options_.push_back(factor);
+    specs_.push_back(option.spec);
+    options_.push_back(option.factor);
   }
-  rows_.push_back({what, first, count, option});
+  rows_.push_back({what, first, count, i});
 }
 
 void DynamicsDraws::apply(World& world, Stream& stream) const {

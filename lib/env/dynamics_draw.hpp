@@ -5,7 +5,7 @@
 // was built from one option, uniform in [low / middle, high / middle]. All that one option set takes the same
 // factor.
 #pragma once
-#include "base/option.hpp"
+#include "base/option_rows.hpp"
 #include "base/rng.hpp"
 #include "env/option_table.hpp"
 #include "physics/world.hpp"
@@ -31,11 +31,25 @@ enum class Drawn : int32_t {
 // The options that level draws unless they are given.
 void add_level_options(OptionTable& table);
 
+// What worlds may draw of an option: its middle, with which the scene is made, and the range of factors on it,
+// of a range that was given, else of the option's level.
+struct DrawnOption {
+  double middle = 0;
+  OptionRange factor;
+  const OptionSpec* spec = nullptr;
+};
+// Error(kRange) for a range whose middle is 0.
+DrawnOption drawn_option(const Options& options, const char* key);
+template <>
+struct OptionValue<DrawnOption> {
+  static constexpr bool fits(const OptionSpec& s) { return s.range; }
+  static DrawnOption read(const Options& o, const char* key) { return drawn_option(o, key); }
+};
+
 class DynamicsDraws {
  public:
-  // The factor's range for an option: of a range that was given, else of its level; nothing is added when it
-  // is 1. Error(kRange) for a range whose middle is 0, or that a factor may not have.
-  void add(const Options& options, const char* key, Drawn what, int32_t first = 0, int32_t count = 1);
+  // Nothing is added when the factor is 1.
+  void add(const DrawnOption& option, Drawn what, int32_t first = 0, int32_t count = 1);
   bool empty() const { return rows_.empty(); }
   // A factor for each option, in the order in which they were first added, from `stream`; then the world's
   // dynamics.

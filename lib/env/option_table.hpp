@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "base/name_index.hpp"
-#include "base/option.hpp"
+#include "base/option_rows.hpp"
 
 namespace rdm {
 
@@ -25,6 +25,10 @@ class OptionTable {
   template <int32_t N>
   void add(const OptionSpec (&rows)[N]) {
     for (const OptionSpec& row : rows) add(row);
+  }
+  template <class S, class... M>
+  void add(const OptionRows<S, M...>& rows) {
+    add(rows.specs);
   }
   void add(const OptionSpec& row);
   // A row whose key is made here: "first.name.last", parts may be null.

@@ -25,27 +25,40 @@ const SingleHandConfig kConfig = {{.count = 1, .bases = {{{0, 0, 0.1}, {0, 0, 1,
                                    .standing = true},
                                   0};
 
-constexpr OptionSpec kRows[] = {
-    basic(text_option("reward", "literal", "literal|lift",
-                      "100 times the object's height, or (lift) its height above lift_height")),
-    basic(number_option("lift_height", 0.025, -1, 10, "height without a lift, m")),
-    basic(number_option("success_height", 0.1, 0, 10, "object height that counts as success, m")),
-    legacy(text_option("cost_mode", "default", "default|paper|literal",
-                       "default, paper: joint force; literal: range of the first finger's command")),
-    number_option("effort_share", 0.4, 0, 1, "cost: a finger joint's force above this share of its limit"),
-    text_option(
-        "initial_mean", "close", "close|hold|zero",
-        "start of a new policy: the wrist down and fingers and thumb around the cube, the hold action, "
-        "or 0"),
-    number_option("finger_range", 0.9, 0, 1, "cost finger_range: a first finger's command beyond +-this"),
-};
-
 enum : int { kCost, kFingerEffort, kFingerRange, kNumCosts };
 constexpr CostSpec kCosts[kNumCosts] = {
     {"cost", "a finger joint strains, see cost_mode; raw: the measured value", 25},
     {"finger_effort", "a finger joint's force above effort_share of its limit; raw: largest share", -1},
     {"finger_range", "a first finger's command beyond finger_range; raw: largest of them", -1},
 };
+
+enum class Mean { kClose, kHold, kZero };  // of a new policy
+struct GraspOptions {
+  bool lift;                           // the reward counts from lift_height on
+  double lift_height, success_height;  // m
+  int cost;                            // the column that the cost is
+  double effort_share, finger_range;
+  Mean initial_mean;
+};
+constexpr auto kRows = option_rows<GraspOptions>(
+    row<&GraspOptions::lift, false, true>(
+        basic(text_option("reward", "literal", "literal|lift",
+                          "100 times the object's height, or (lift) its height above lift_height"))),
+    row<&GraspOptions::lift_height>(
+        basic(number_option("lift_height", 0.025, -1, 10, "height without a lift, m"))),
+    row<&GraspOptions::success_height>(
+        basic(number_option("success_height", 0.1, 0, 10, "object height that counts as success, m"))),
+    row<&GraspOptions::cost, kFingerEffort, kFingerEffort, kFingerRange>(
+        legacy(text_option("cost_mode", "default", "default|paper|literal",
+                           "default, paper: joint force; literal: range of the first finger's command"))),
+    row<&GraspOptions::effort_share>(number_option(
+        "effort_share", 0.4, 0, 1, "cost: a finger joint's force above this share of its limit")),
+    row<&GraspOptions::initial_mean, Mean::kClose, Mean::kHold, Mean::kZero>(text_option(
+        "initial_mean", "close", "close|hold|zero",
+        "start of a new policy: the wrist down and fingers and thumb around the cube, the hold action, "
+        "or 0")),
+    row<&GraspOptions::finger_range>(number_option(
+        "finger_range", 0.9, 0, 1, "cost finger_range: a first finger's command beyond +-this")));
 
 void add_options(OptionTable& table) {
   add_single_hand_options(kConfig, table);
@@ -55,18 +68,12 @@ void add_options(OptionTable& table) {
 class Grasp final : public SingleHand {
  public:
   explicit Grasp(const Options& o)
-      : SingleHand(kConfig, o),
-        floor_(same_name(o.text("reward"), "lift") ? o.number("lift_height") : 0),
-        success_height_(o.number("success_height")),
-        effort_share_(o.number("effort_share")),
-        range_(o.number("finger_range")),
-        source_(same_name(o.text("cost_mode"), "literal") ? kFingerRange : kFingerEffort) {
-    const char* mean = o.text("initial_mean");
-    if (same_name(mean, "hold"))
+      : SingleHand(kConfig, o), options_(kRows.read(o)), floor_(options_.lift ? options_.lift_height : 0) {
+    if (options_.initial_mean == Mean::kHold)
       hold_action(initial_mean_);
     else
       hands().hold_arms(initial_mean_);
-    if (same_name(mean, "close") && closed().count > 0)
+    if (options_.initial_mean == Mean::kClose && closed().count > 0)
       std::copy(closed().begin() + hand().arm_actions, closed().end(), initial_mean_ + hand().arm_actions);
     const Robot& robot = *hand().robot;
     const RobotFinger& first = robot.fingers[0];
@@ -81,26 +88,26 @@ class Grasp final : public SingleHand {
   void judge_step(const Step& step, Verdict* v) const override {
     const double height = step.world.body(0).X.p.z;
     v->reward = 100 * (height - floor_);
-    v->success = height >= success_height_;
+    v->success = height >= options_.success_height;
     double effort = 0, range = 0;
     for (const int32_t i : finger_actions_) {
       const int32_t joint = hand().joint(i);
       effort = std::max(effort, std::abs(step.world.torque()[hand().first + joint]) / hand().effort[joint]);
     }
     for (const int32_t i : first_finger_actions_) range = std::max(range, std::abs(step.command[i]));
-    v->cost[kFingerEffort] = effort > effort_share_;
+    v->cost[kFingerEffort] = effort > options_.effort_share;
     v->cost_raw[kFingerEffort] = effort;
-    v->cost[kFingerRange] = range > range_;
+    v->cost[kFingerRange] = range > options_.finger_range;
     v->cost_raw[kFingerRange] = range;
-    v->cost[kCost] = v->cost[source_];
-    v->cost_raw[kCost] = v->cost_raw[source_];
+    v->cost[kCost] = v->cost[options_.cost];
+    v->cost_raw[kCost] = v->cost_raw[options_.cost];
   }
 
   const Table<float>& closed() const { return hand().robot->poses.closed; }
 
+  GraspOptions options_;
+  double floor_;  // m
   Vector<int32_t> finger_actions_, first_finger_actions_;
-  double floor_, success_height_, effort_share_, range_;
-  int source_;
 };
 
 const CameraSpec kCameras[] = {

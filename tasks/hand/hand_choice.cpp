@@ -22,23 +22,48 @@ constexpr OptionSpec choosing(OptionSpec row) {
   return row;
 }
 
-constexpr OptionSpec kRows[] = {
-    choosing(basic(text_option("arm", kNone, nullptr,
-                               "the arm that carries each hand, a robot's name; none: as the task has it"))),
+// Texts are of the Options. Of all hands; of one of them, where empty is: as all; of all arms.
+struct ChoiceOptions {
+  const char *hand, *arm;
 };
-constexpr OptionSpec kArmRows[] = {
-    text_option("arm_base", "auto", nullptr,
-                "where an arm's base is: x y z (m) and yaw (degrees); auto: behind the hand, within reach"),
-    text_option("arm_pose", "auto", nullptr,
-                "an arm's joints at the start, rad; auto: those that bring the hand to its place", 255),
-    number_option("adapter", 0, 0, 0.5, "thickness of the plate between flange and hand, m"),
-    number_option("mount_yaw", 0, -360, 360, "turn of a hand about its arm's flange, degrees"),
+constexpr auto kRows = option_rows<ChoiceOptions>(
+    row<&ChoiceOptions::hand>(
+        choosing(basic(text_option("hand", "", nullptr, "the robot that each hand is, by name")))),
+    row<&ChoiceOptions::arm>(choosing(
+        basic(text_option("arm", kNone, nullptr,
+                          "the arm that carries each hand, a robot's name; none: as the task has it")))));
+struct SideOptions {
+  const char *hand, *arm, *arm_base, *arm_pose;
 };
-
-const char* const kSideKeys[kMaxHands][2] = {{"right.hand", "right.arm"}, {"left.hand", "left.arm"}};
-const char* const kBaseKeys[kMaxHands] = {"right.arm_base", "left.arm_base"};
-const char* const kPoseKeys[kMaxHands] = {"right.arm_pose", "left.arm_pose"};
-const char* const kKeys[2] = {"hand", "arm"};
+consteval auto side_rows(const char* hand, const char* arm, const char* arm_base, const char* arm_pose) {
+  return option_rows<SideOptions>(
+      row<&SideOptions::hand>(
+          choosing(text_option(hand, "", nullptr, "the same for this hand alone; empty: as hand"))),
+      row<&SideOptions::arm>(
+          choosing(text_option(arm, "", nullptr, "the same for this hand alone; empty: as arm"))),
+      row<&SideOptions::arm_base>(
+          text_option(arm_base, "", nullptr, "the same for this hand alone; empty: as arm_base")),
+      row<&SideOptions::arm_pose>(
+          text_option(arm_pose, "", nullptr, "the same for this hand alone; empty: as arm_pose", 255)));
+}
+constexpr decltype(side_rows("", "", "", "")) kSideRows[kMaxHands] = {
+    side_rows("right.hand", "right.arm", "right.arm_base", "right.arm_pose"),
+    side_rows("left.hand", "left.arm", "left.arm_base", "left.arm_pose")};
+struct ArmOptions {
+  const char *arm_base, *arm_pose;
+  double adapter, mount_yaw;  // m, degrees
+};
+constexpr auto kArmRows = option_rows<ArmOptions>(
+    row<&ArmOptions::arm_base>(text_option(
+        "arm_base", "auto", nullptr,
+        "where an arm's base is: x y z (m) and yaw (degrees); auto: behind the hand, within reach")),
+    row<&ArmOptions::arm_pose>(
+        text_option("arm_pose", "auto", nullptr,
+                    "an arm's joints at the start, rad; auto: those that bring the hand to its place", 255)),
+    row<&ArmOptions::adapter>(
+        number_option("adapter", 0, 0, 0.5, "thickness of the plate between flange and hand, m")),
+    row<&ArmOptions::mount_yaw>(
+        number_option("mount_yaw", 0, -360, 360, "turn of a hand about its arm's flange, degrees")));
 
 // By its name or the shorter one.
 bool is_own(const HandControlConfig& config, const char* name) {
@@ -100,10 +125,9 @@ Pose read_base(const char* key, const char* text) {
   return {{v[0], v[1], v[2]}, axis_angle({0, 0, 1}, v[3] * kDegree)};
 }
 
-// The text for hand i: its own key's, else the common one's.
-const char* own_text(const Options& o, const char* own, const char* common) {
-  const char* text = o.text(own);
-  return *text ? text : o.text(common);
+// The text for a hand alone, else the common one.
+const char* own_text(const char* own, const char* common) {
+  return *own ? own : common;
 }
 
 // From where an arm comes to a hand with this palm: from behind the fingers, or where those point up or down
@@ -119,20 +143,23 @@ void mount(const Options& o, int32_t i, const char* name, ChosenHand* out) {
   RobotCopy mirrored;
   const bool left = out->side == Side::kLeft;
   if (left) mirrored = make_mirrored(hand);
-  const Mounting mounting{o.number("mount_yaw") * kDegree, o.number("adapter")};
+  const SideOptions own = kSideRows[i].read(o);
+  const ArmOptions common = kArmRows.read(o);
+  const Mounting mounting{common.mount_yaw * kDegree, common.adapter};
   RobotCopy both = make_mounted(arm, left ? mirrored.robot() : hand, mounting);
   const Pose X_WR = out->X_WB * hand.X_BR;
   const Pose X_WF = X_WR * inverse(mounted_root(left ? mirrored.robot() : hand, mounting));
-  const char *base = own_text(o, kBaseKeys[i], "arm_base"), *pose = own_text(o, kPoseKeys[i], "arm_pose");
+  const char *base = own_text(own.arm_base, common.arm_base), *pose = own_text(own.arm_pose, common.arm_pose);
+  const char* base_key = kSideRows[i].of<&SideOptions::arm_base>().key;
   out->X_WF = X_WF;
   out->from = side_of_arm(out->X_WB * palm_in_base(hand, out->side, false));
   out->given = !same_name(base, "auto");
   out->chosen = same_name(pose, "auto");
   Pose X_WB = out->X_WB;
   double q[kMaxRobotLinks];
-  if (out->given) X_WB = read_base(kBaseKeys[i], base);
+  if (out->given) X_WB = read_base(base_key, base);
   if (!out->chosen) {
-    read_numbers(kPoseKeys[i], pose, arm.links.count, q);
+    read_numbers(kSideRows[i].of<&SideOptions::arm_pose>().key, pose, arm.links.count, q);
     for (int32_t k = 0; k < arm.links.count; ++k)
       q[k] = std::clamp(q[k], arm.links[k].lower, arm.links[k].upper);
     // without a place of its own it stands where that pose brings the hand to its place
@@ -142,11 +169,11 @@ void mount(const Options& o, int32_t i, const char* name, ChosenHand* out) {
     if (poses.empty())
       fail(Code::kUnsupported,
            "%s: from there %s does not bring the %s hand to its place, its flange to (%.3g, %.3g, %.3g)",
-           kBaseKeys[i], arm.name, kSideNames[i], X_WF.p.x, X_WF.p.y, X_WF.p.z);
+           base_key, arm.name, kSideNames[i], X_WF.p.x, X_WF.p.y, X_WF.p.z);
     std::copy_n(poses[0].q, arm.links.count, q);
   } else if (!place_arm(arm, X_WF, out->from, &X_WB, q)) {
     fail(Code::kUnsupported, "%s: no place was found from which %s reaches (%.3g, %.3g, %.3g); give one",
-         kBaseKeys[i], arm.name, X_WF.p.x, X_WF.p.y, X_WF.p.z);
+         base_key, arm.name, X_WF.p.x, X_WF.p.y, X_WF.p.z);
   }
   out->mounted = std::move(both);
   out->armed = true;
@@ -168,39 +195,41 @@ void set_arm(const Pose& X_WB, const double* q, ChosenHand* hand) {
 }
 
 int32_t add_hand_choice_options(const HandControlConfig& config, OptionTable& table) {
-  table.add(choosing(
-      basic(text_option("hand", config.robot->name, nullptr, "the robot that each hand is, by name"))));
-  table.add(kRows);
+  table.add(kRows.with<&ChoiceOptions::hand>(config.robot->name));
   const auto side = [&](int32_t i) { return config.sides ? config.sides[i] : HandDefault{"", "", "", ""}; };
   for (int32_t i = 0; i < config.count; ++i) {
     const HandDefault d = side(i);
-    table.add(choosing(
-        text_option(kSideKeys[i][0], d.hand, nullptr, "the same for this hand alone; empty: as hand")));
-    table.add(choosing(
-        text_option(kSideKeys[i][1], d.arm, nullptr, "the same for this hand alone; empty: as arm")));
-    table.add(
-        text_option(kBaseKeys[i], d.arm_base, nullptr, "the same for this hand alone; empty: as arm_base"));
-    table.add(text_option(kPoseKeys[i], d.arm_pose, nullptr,
-                          "the same for this hand alone; empty: as arm_pose", 255));
+    table.add(kSideRows[i]
+                  .with<&SideOptions::hand>(d.hand)
+                  .with<&SideOptions::arm>(d.arm)
+                  .with<&SideOptions::arm_base>(d.arm_base)
+                  .with<&SideOptions::arm_pose>(d.arm_pose));
   }
   table.add(kArmRows);
   // the host's word for this side, the task's, the host's for both, the task's robot
-  const auto chosen = [&](int32_t i, int what, const char* own, const char* otherwise) {
-    for (const char* name : {table.choice(kSideKeys[i][what]), own, table.choice(kKeys[what])})
+  const auto chosen = [&](const OptionSpec& side, const char* own, const OptionSpec& common,
+                          const char* otherwise) {
+    for (const char* name : {table.choice(side.key), own, table.choice(common.key)})
       if (*name) return name;
     return otherwise;
   };
   int32_t shapes = 0;
   for (int32_t i = 0; i < config.count; ++i) {
-    shapes += add_rows(config, chosen(i, 0, side(i).hand, config.robot->name), table);
-    shapes += add_rows(config, chosen(i, 1, side(i).arm, kNone), table);
+    const char* hand = chosen(kSideRows[i].of<&SideOptions::hand>(), side(i).hand,
+                              kRows.of<&ChoiceOptions::hand>(), config.robot->name);
+    const char* arm =
+        chosen(kSideRows[i].of<&SideOptions::arm>(), side(i).arm, kRows.of<&ChoiceOptions::arm>(), kNone);
+    shapes += add_rows(config, hand, table);
+    shapes += add_rows(config, arm, table);
   }
   add_robot_scales(table);
   return shapes;
 }
 
 ChosenHand choose_hand(const HandControlConfig& config, const Options& o, int32_t i) {
-  const char *name = own_text(o, kSideKeys[i][0], kKeys[0]), *arm = own_text(o, kSideKeys[i][1], kKeys[1]);
+  const ChoiceOptions common = kRows.read(o);
+  const SideOptions own = kSideRows[i].read(o);
+  const char *name = own_text(own.hand, common.hand), *arm = own_text(own.arm, common.arm);
   ChosenHand out;
   if (is_own(config, name))
     out.own = config.robot;
@@ -208,8 +237,9 @@ ChosenHand choose_hand(const HandControlConfig& config, const Options& o, int32_
     out.listed = RobotRef(find_robot(name));
   const Robot& robot = out.robot();
   if (robot.kind != RobotKind::kHand)
-    fail(Code::kUnsupported, "%s: robot %s is no hand", kSideKeys[i][0], robot.name);
-  const bool copied = i > 0 && same_name(o.text("left_model"), "right_copy");
+    fail(Code::kUnsupported, "%s: robot %s is no hand", kSideRows[i].of<&SideOptions::hand>().key,
+         robot.name);
+  const bool copied = i > 0 && left_is_copied(o);
   out.side = i == 0 || copied ? Side::kRight : Side::kLeft;
   const bool armed = !same_name(arm, kNone);
   out.X_WB = armed && config.armed_bases ? config.armed_bases[i] : config.bases[i];

@@ -14,39 +14,58 @@ namespace {
 constexpr int32_t kContactsEach = 4;      // that a shape of another robot may add
 constexpr double kSourceStep = 1.0 / 60;  // s, of the source's scales
 
-constexpr OptionSpec kRows[] = {
-    number_option("action_average", 1, 0.01, 1, "weight of the new action in the moving average of targets"),
-    text_option("sensor", "contact", "contact|none", "fingertip force entries: contact forces, or zero"),
-    basic(text_option(
-        "control", "position", "position|velocity|torque",
-        "what a joint's action entry is: its target, the target's velocity, or a share of its effort")),
-    number_option("arm_range", 0.3, 0, 10,
-                  "how far from the start an arm's joint goes with an entry of 1, rad; 0: its whole range"),
-    number_option("arm_noise", 0, 0, 1, "half width of the draw of an arm's joints at a reset, rad"),
-    text_option(
+constexpr auto kRows = option_rows<HandOptions>(
+    row<&HandOptions::action_average>(number_option(
+        "action_average", 1, 0.01, 1, "weight of the new action in the moving average of targets")),
+    row<&HandOptions::sensor, true, false>(
+        text_option("sensor", "contact", "contact|none", "fingertip force entries: contact forces, or zero")),
+    row<&HandOptions::control, HandDrive::kPosition, HandDrive::kVelocity, HandDrive::kTorque>(
+        basic(text_option(
+            "control", "position", "position|velocity|torque",
+            "what a joint's action entry is: its target, the target's velocity, or a share of its effort"))),
+    row<&HandOptions::arm_range>(number_option(
+        "arm_range", 0.3, 0, 10,
+        "how far from the start an arm's joint goes with an entry of 1, rad; 0: its whole range")),
+    row<&HandOptions::arm_noise>(
+        number_option("arm_noise", 0, 0, 1, "half width of the draw of an arm's joints at a reset, rad")),
+    row<&HandOptions::arm_gravity, ArmGravity::kCompensated, ArmGravity::kFree, ArmGravity::kOff>(text_option(
         "arm_gravity", "compensated", "compensated|free|off",
-        "of arms: gravity held by feed-forward, left to the drives, or (the paper's) none; hands feel none"),
+        "of arms: gravity held by feed-forward, left to the drives, or (the paper's) none; hands feel none")),
+    row<&HandOptions::friction_object>(drawable(
+        basic(number_option("friction.hand_object", 1, 0, 10, "friction coefficient of hands and object")))),
+    row<&HandOptions::friction_self>(
+        drawable(number_option("friction.hand_self", 0, 0, 10, "friction coefficient inside one hand"))),
+    row<&HandOptions::friction_ground>(drawable(
+        number_option("friction.hand_ground", 1, 0, 10, "friction coefficient of hand and ground"))));
+
+struct PairOptions {
+  bool hand_contact;
+  DrawnOption friction;
 };
-constexpr OptionSpec kPairRows[] = {
-    flag_option("hand_contact", true, "the hands may touch each other"),
-    drawable(number_option("friction.hand_hand", 0, 0, 10, "friction coefficient of one hand and the other")),
-};
-constexpr OptionSpec kFrictionRows[] = {
-    drawable(number_option("friction.hand_self", 0, 0, 10, "friction coefficient inside one hand")),
-    drawable(number_option("friction.hand_ground", 1, 0, 10, "friction coefficient of hand and ground")),
-};
-constexpr OptionSpec kFlyingRows[] = {
-    legacy(
+constexpr auto kPairRows = option_rows<PairOptions>(
+    row<&PairOptions::hand_contact>(flag_option("hand_contact", true, "the hands may touch each other")),
+    row<&PairOptions::friction>(drawable(
+        number_option("friction.hand_hand", 0, 0, 10, "friction coefficient of one hand and the other"))));
+
+constexpr auto kFlyingRows = option_rows<FlyingOptions>(
+    row<&FlyingOptions::paper_order, true, false>(legacy(
         text_option("action_order", "paper", "paper|legacy",
-                    "of a hand's entries: joints, force, torque (paper) or force, torque, joints (legacy)")),
-    drawable(number_option("base_damping", 100, 0, 1e4, "damping of a flying hand's links, 1/s")),
-    legacy(text_option(
+                    "of a hand's entries: joints, force, torque (paper) or force, torque, joints (legacy)"))),
+    row<&FlyingOptions::base_damping>(
+        drawable(number_option("base_damping", 100, 0, 1e4, "damping of a flying hand's links, 1/s"))),
+    row<&FlyingOptions::signed_angles, false, true>(legacy(text_option(
         "base_angles", "positive", "positive|signed",
-        "base angles in the observation: in [0, 2 pi), where the bound of +-5 cuts, or in [-pi, pi]")),
-    number_option("base_speed", 2, 0.01, 100, "bound of a base's speed, m/s"),
-    number_option("base_spin", 10, 0.1, 1000, "bound of a base's angular speed, rad/s"),
-    number_option("base_reach", 0, 0, 10, "how far from its start a base can fly, m; 0: no bound"),
-};
+        "base angles in the observation: in [0, 2 pi), where the bound of +-5 cuts, or in [-pi, pi]"))),
+    row<&FlyingOptions::base_speed>(
+        number_option("base_speed", 2, 0.01, 100, "bound of a base's speed, m/s")),
+    row<&FlyingOptions::base_spin>(
+        number_option("base_spin", 10, 0.1, 1000, "bound of a base's angular speed, rad/s")),
+    row<&FlyingOptions::base_reach>(
+        number_option("base_reach", 0, 0, 10, "how far from its start a base can fly, m; 0: no bound")),
+    row<&FlyingOptions::transition_scale>(
+        number_option("transition_scale", 0, 0, 10, "force of a base's action entry of 1, in 1667 N")),
+    row<&FlyingOptions::orientation_scale>(
+        number_option("orientation_scale", 0, 0, 10, "torque of a base's action entry of 1, in 16.7 N m")));
 
 Vec3 bounded(const Vec3& v, double most) {
   const double length = norm(v);
@@ -56,20 +75,14 @@ Vec3 bounded(const Vec3& v, double most) {
 }  // namespace
 
 void add_hand_control_options(const HandControlConfig& config, OptionTable& table, int32_t contacts_max) {
-  table.add(kRows);
-  table.add(drawable(basic(number_option("friction.hand_object", config.friction, 0, 10,
-                                         "friction coefficient of hands and object"))));
-  table.add(kFrictionRows);
+  table.add(kRows.with<&HandOptions::friction_object>(config.friction));
   if (config.count > 1) {
     table.add(kPairRows);
     add_left_hand_options(table);
   }
   if (config.flying) {
-    table.add(kFlyingRows);
-    table.add(number_option("transition_scale", config.transition_scale, 0, 10,
-                            "force of a base's action entry of 1, in 1667 N"));
-    table.add(number_option("orientation_scale", config.orientation_scale, 0, 10,
-                            "torque of a base's action entry of 1, in 16.7 N m"));
+    table.add(kFlyingRows.with<&FlyingOptions::transition_scale>(config.transition_scale)
+                  .with<&FlyingOptions::orientation_scale>(config.orientation_scale));
   }
   add_level_options(table);
   add_sim_options(table);
@@ -82,24 +95,24 @@ void set_friction(SceneDef* scene, int32_t a, int32_t b, double mu) {
   scene->friction[a][b].mu = scene->friction[b][a].mu = mu;
 }
 
-void set_friction(HandScene* scene, int32_t a, int32_t b, const Options& options, const char* key) {
-  set_friction(scene, a, b, options.number(key));
-  scene->draws.add(options, key, Drawn::kFriction, a, b);
+void set_friction(HandScene* scene, int32_t a, int32_t b, const DrawnOption& mu) {
+  set_friction(scene, a, b, mu.middle);
+  scene->draws.add(mu, Drawn::kFriction, a, b);
 }
 
 namespace {
 
 // What option control and the weight of an arm ask of the drives of hand i.
-void set_drives(const Options& o, const ChosenHand& hand, ArticulationDef* def, SceneDef* scene) {
+void set_drives(const HandOptions& o, const ChosenHand& hand, ArticulationDef* def, SceneDef* scene) {
   const Robot& robot = hand.robot();
-  if (same_name(o.text("control"), "torque")) {  // drives only damp
+  if (o.control == HandDrive::kTorque) {  // drives only damp
     scene->feedforward = true;
     for (int32_t k = 0; k < robot.num_actuated(); ++k)
       def->links[static_cast<size_t>(robot.actuated(k))].joint.kp = 0;
   }
-  if (!hand.armed || same_name(o.text("arm_gravity"), "off")) return;
+  if (!hand.armed || o.arm_gravity == ArmGravity::kOff) return;
   def->gravity = true;
-  scene->feedforward = scene->feedforward || same_name(o.text("arm_gravity"), "compensated");
+  scene->feedforward = scene->feedforward || o.arm_gravity == ArmGravity::kCompensated;
   // the hand, and the link that its root is one body with
   for (int32_t i = 0; i < robot.links.count; ++i)
     def->links[static_cast<size_t>(i)].weightless = i >= robot.arm_links || i == robot.flange;
@@ -108,20 +121,22 @@ void set_drives(const Options& o, const ChosenHand& hand, ArticulationDef* def, 
 }  // namespace
 
 HandScene make_hand_scene(const HandControlConfig& config, const Options& o, int32_t num_materials) {
+  const HandOptions options = kRows.read(o);
   HandScene s;
   s.gravity = gravity_from(o);
-  s.draws.add(o, "gravity", Drawn::kGravity);
+  s.draws.add(drawn_option(o, "gravity"), Drawn::kGravity);
   s.solver = solver_from(o);
   int32_t links = 0;
   for (int32_t i = 0; i < config.count; ++i) {
     s.hands[i] = choose_hand(config, o, i);
     ArticulationDef hand = make_hand(s.hands[i], o, i, links, i == 0 ? kRightHand : kLeftHand, &s.draws);
     links += s.hands[i].robot().links.count;
-    set_drives(o, s.hands[i], &hand, &s);
+    set_drives(options, s.hands[i], &hand, &s);
     if (config.flying && !s.hands[i].armed) {
       hand.free_base = true;
-      hand.base_damping = o.number("base_damping");
-      s.draws.add(o, "base_damping", Drawn::kBaseDamping, i);
+      const DrawnOption damping = kFlyingRows.read(o).base_damping;
+      hand.base_damping = damping.middle;
+      s.draws.add(damping, Drawn::kBaseDamping, i);
     }
     s.articulations.push_back(hand);
   }
@@ -133,36 +148,26 @@ HandScene make_hand_scene(const HandControlConfig& config, const Options& o, int
   s.statics.push_back(ground);
   s.num_materials = num_materials;
   for (const int32_t hand : {kRightHand, kLeftHand}) {
-    set_friction(&s, hand, hand, o, "friction.hand_self");
-    set_friction(&s, hand, kObject, o, "friction.hand_object");
-    set_friction(&s, hand, kGround, o, "friction.hand_ground");
+    set_friction(&s, hand, hand, options.friction_self);
+    set_friction(&s, hand, kObject, options.friction_object);
+    set_friction(&s, hand, kGround, options.friction_ground);
   }
   if (config.count > 1) {
-    s.articulations_touch = o.flag("hand_contact");
-    set_friction(&s, kRightHand, kLeftHand, o, "friction.hand_hand");
+    const PairOptions pair = kPairRows.read(o);
+    s.articulations_touch = pair.hand_contact;
+    set_friction(&s, kRightHand, kLeftHand, pair.friction);
   }
   return s;
 }
 
 HandControl::HandControl(const HandControlConfig& config, const Options& o, const Scene& scene,
                          const HandScene& made)
-    : count_(config.count),
-      mode_(same_name(o.text("control"), "velocity") ? Mode::kVelocity
-            : same_name(o.text("control"), "torque") ? Mode::kTorque
-                                                     : Mode::kPosition),
-      sensor_(same_name(o.text("sensor"), "contact")),
-      average_(o.number("action_average")),
-      arm_noise_(o.number("arm_noise")),
-      draws_(&made.draws) {
+    : count_(config.count), options_(kRows.read(o)), draws_(&made.draws) {
   const ChosenHand* hands = made.hands;
   if (config.flying) {
-    paper_order_ = same_name(o.text("action_order"), "paper");
-    signed_angles_ = same_name(o.text("base_angles"), "signed");
-    force_ = kSourceStep * 1e5 * o.number("transition_scale");
-    torque_ = kSourceStep * 1e3 * o.number("orientation_scale");
-    most_speed_ = o.number("base_speed");
-    most_spin_ = o.number("base_spin");
-    reach_ = o.number("base_reach");
+    base_ = kFlyingRows.read(o);
+    force_ = kSourceStep * 1e5 * base_.transition_scale;
+    torque_ = kSourceStep * 1e3 * base_.orientation_scale;
   }
   size_t at = 0;
   for (int32_t i = 0; i < count_; ++i) {
@@ -170,9 +175,9 @@ HandControl::HandControl(const HandControlConfig& config, const Options& o, cons
     Hand& h = hands_[i] = find_hand(robot, scene, i);
     bases_[i] = hands[i].X_WB.p;
     flying_[i] = config.flying && !hands[i].armed;
-    compensated_[i] = hands[i].armed && same_name(o.text("arm_gravity"), "compensated");
+    compensated_[i] = hands[i].armed && options_.arm_gravity == ArmGravity::kCompensated;
     start_[i] = config.folded && robot.poses.folded.count ? robot.poses.folded.rows : robot.home.rows;
-    if (const double range = o.number("arm_range"); range > 0)
+    if (const double range = options_.arm_range; range > 0)
       for (int32_t k = 0; k < h.arm_actions; ++k) {
         const double middle = start_[i][h.joint(k)];
         h.act_lower[k] = std::max(h.act_lower[k], middle - range);
@@ -180,9 +185,9 @@ HandControl::HandControl(const HandControlConfig& config, const Options& o, cons
       }
     first_entry_[i + 1] = first_entry_[i] + h.num_actions + (flying_[i] ? kBaseActions : 0);
     first_command_[i + 1] = first_command_[i] + h.num_actions;
-    const char* format = !flying_[i]    ? "%s%s %sjoints"
-                         : paper_order_ ? "%s%s %sjoints, force, torque"
-                                        : "%s%s %sforce, torque, joints";
+    const char* format = !flying_[i]         ? "%s%s %sjoints"
+                         : base_.paper_order ? "%s%s %sjoints, force, torque"
+                                             : "%s%s %sforce, torque, joints";
     at += static_cast<size_t>(std::snprintf(order_ + at, sizeof order_ - at, format, i > 0 ? ", " : "",
                                             kSideNames[i], hands[i].armed ? "arm, " : ""));
     if (!hands[i].own || hands[i].armed)  // alike in numbers, but another robot
@@ -214,7 +219,7 @@ void HandControl::check_state(const void* bytes) const {
 void HandControl::reset(double noise, bool literal, World& world, const HandControlState& state,
                         Stream& stream) const {
   draws_->apply(world, stream);
-  JointNoise draw{noise, literal, arm_noise_};
+  JointNoise draw{noise, literal, options_.arm_noise};
   std::copy_n(start_, kMaxHands, draw.start);
   draw_joints(draw, hands_, count_, world, stream);
   for (int32_t i = 0; i < count_; ++i)
@@ -227,21 +232,23 @@ void HandControl::reset(double noise, bool literal, World& world, const HandCont
 // The commands of hand i after its action entries.
 void HandControl::move_commands(const World& world, int32_t i, const float* a, double* command) const {
   const Hand& h = hands_[i];
-  if (mode_ == Mode::kPosition) {
+  if (options_.control == HandDrive::kPosition) {
     for (int32_t k = 0; k < h.num_actions; ++k)
-      command[k] = average_ * static_cast<double>(a[k]) + (1 - average_) * command[k];
+      command[k] =
+          options_.action_average * static_cast<double>(a[k]) + (1 - options_.action_average) * command[k];
     return;
   }
   const double dt = world.scene().control_dt();
   for (int32_t k = 0; k < h.num_actions; ++k) {
-    if (mode_ == Mode::kTorque) {
+    if (options_.control == HandDrive::kTorque) {
       command[k] = std::clamp(h.command(k, world.q()[h.actuated[k]]), -1.0, 1.0);
       continue;
     }
     // a command of 2 is the whole range; a joint without a bound goes over it in a second
     const double range = h.act_upper[k] - h.act_lower[k];
     const double step = h.robot->links[h.joint(k)].velocity > 0 ? 2 * h.rate[k] / range : 2 * dt;
-    command[k] = std::clamp(command[k] + average_ * step * static_cast<double>(a[k]), -1.0, 1.0);
+    command[k] =
+        std::clamp(command[k] + options_.action_average * step * static_cast<double>(a[k]), -1.0, 1.0);
   }
 }
 
@@ -249,7 +256,7 @@ void HandControl::feed_forward(World& world, int32_t i, const float* a) const {
   const Hand& h = hands_[i];
   double torque[kMaxHandJoints] = {};
   if (compensated_[i]) gravity_torques(world, h.articulation, torque);
-  if (mode_ == Mode::kTorque)
+  if (options_.control == HandDrive::kTorque)
     for (int32_t k = 0; k < h.num_actions; ++k)
       if (const double effort = h.effort[h.joint(k)]; std::isfinite(effort))
         torque[h.joint(k)] += effort * static_cast<double>(a[k]);
@@ -270,9 +277,9 @@ void HandControl::control(World& world, const HandControlState& state, const flo
 // Nothing but a blow makes a base as fast as its bound: force against damping ends far below.
 void HandControl::slow_base(World& world, int32_t articulation) const {
   Motion m = world.base(articulation);
-  if (norm(m.v) <= most_speed_ && norm(m.w) <= most_spin_) return;
-  m.v = bounded(m.v, most_speed_);
-  m.w = bounded(m.w, most_spin_);
+  if (norm(m.v) <= base_.base_speed && norm(m.w) <= base_.base_spin) return;
+  m.v = bounded(m.v, base_.base_speed);
+  m.w = bounded(m.w, base_.base_spin);
   world.set_base(articulation, m);
 }
 
@@ -288,7 +295,7 @@ void HandControl::push_bases(World& world, const float* action) const {
       torque[k] = torque_ * static_cast<double>(a[3 + k]);
     }
     const Vec3 out = world.base(articulation).X.p - bases_[i];
-    if (reach_ > 0 && dot(out, out) >= reach_ * reach_) {
+    if (base_.base_reach > 0 && dot(out, out) >= base_.base_reach * base_.base_reach) {
       const double outward = dot(force, out);
       if (outward > 0) force -= (outward / dot(out, out)) * out;
     }
@@ -307,9 +314,9 @@ HandView HandControl::view(const World& world, const float* action, int32_t i) c
   return {world,
           hands_[i],
           action + first_entry_[i],
-          sensor_,
+          options_.sensor,
           flying_[i] ? &world.base(hands_[i].articulation) : nullptr,
-          signed_angles_};
+          base_.signed_angles};
 }
 
 void HandControl::add_fields(FieldTable& table) const {
@@ -323,7 +330,7 @@ float* HandControl::write(const World& world, const float* action, float* out) c
 
 void HandControl::hold(float* action) const {
   std::fill_n(action, action_dim(), 0.0f);
-  if (mode_ != Mode::kPosition) return;
+  if (options_.control != HandDrive::kPosition) return;
   for (int32_t i = 0; i < count_; ++i)
     for (int32_t k = 0; k < hands_[i].num_actions; ++k) {
       const Hand& h = hands_[i];

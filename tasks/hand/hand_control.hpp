@@ -9,8 +9,8 @@
 // force and a torque in world axes, a * scale; a base flies through a medium: its speed ends at force /
 // (base_damping m).
 #pragma once
-#include "base/option.hpp"
 #include "base/rng.hpp"
+#include "env/dynamics_draw.hpp"
 #include "env/option_table.hpp"
 #include "tasks/hand/hand_observation.hpp"
 #include "tasks/hand/hands.hpp"
@@ -18,6 +18,28 @@
 namespace rdm {
 
 inline constexpr int kMaxHandActions = kMaxHands * (kMaxHandJoints + kBaseActions);
+
+// What an action entry of a joint is: its target, the target's velocity, or a share of its effort.
+enum class HandDrive { kPosition, kVelocity, kTorque };
+// Of arms; hands feel none.
+enum class ArmGravity { kCompensated, kFree, kOff };
+
+// Options of all hands, and of those that fly.
+struct HandOptions {
+  double action_average;
+  bool sensor;  // fingertips feel contact forces
+  HandDrive control;
+  double arm_range, arm_noise;  // rad
+  ArmGravity arm_gravity;
+  DrawnOption friction_object, friction_self, friction_ground;
+};
+struct FlyingOptions {
+  bool paper_order = true;  // of a hand's entries: joints, force, torque
+  DrawnOption base_damping;
+  bool signed_angles = false;
+  double base_speed, base_spin, base_reach;    // m/s, rad/s, m
+  double transition_scale, orientation_scale;  // as of HandControlConfig
+};
 
 // What one task sets.
 struct HandControlConfig {
@@ -50,7 +72,10 @@ HandScene make_hand_scene(const HandControlConfig& config, const Options& option
 // One entry of the friction table and its mirror image.
 void set_friction(SceneDef* scene, int32_t a, int32_t b, double mu);
 // By an option, whose range is drawn.
-void set_friction(HandScene* scene, int32_t a, int32_t b, const Options& options, const char* key);
+void set_friction(HandScene* scene, int32_t a, int32_t b, const DrawnOption& mu);
+inline void set_friction(HandScene* scene, int32_t a, int32_t b, const Options& options, const char* key) {
+  set_friction(scene, a, b, drawn_option(options, key));
+}
 
 // One world's part: places in its task's state.
 struct HandControlState {
@@ -72,10 +97,10 @@ class HandControl {
   const char* action_order() const { return order_; }
   // Where in the action row hand i's joint entries begin, and its base entries (force, then torque).
   int32_t joint_entries(int32_t i) const {
-    return first_entry_[i] + (flying_[i] && !paper_order_ ? kBaseActions : 0);
+    return first_entry_[i] + (flying_[i] && !base_.paper_order ? kBaseActions : 0);
   }
   int32_t base_entries(int32_t i) const {
-    return first_entry_[i] + (paper_order_ ? hands_[i].num_actions : 0);
+    return first_entry_[i] + (base_.paper_order ? hands_[i].num_actions : 0);
   }
   // Entry of the action row for a joint of the scene; -1: none.
   int32_t action_of(int32_t joint) const {
@@ -112,19 +137,16 @@ class HandControl {
   void feed_forward(World& world, int32_t i, const float* action) const;
   void move_commands(const World& world, int32_t i, const float* action, double* command) const;
 
-  enum class Mode { kPosition, kVelocity, kTorque };
   int32_t count_;
+  HandOptions options_;
+  FlyingOptions base_ = {};  // where hands fly
   int32_t first_entry_[kMaxHands + 1] = {}, first_command_[kMaxHands + 1] = {};
   char order_[256];
-  Mode mode_;
   bool flying_[kMaxHands] = {};
   bool compensated_[kMaxHands] = {};  // gravity, by feed-forward
-  bool sensor_, paper_order_ = true, signed_angles_ = false;
-  double average_, arm_noise_;
   const DynamicsDraws* draws_;
-  double force_ = 0, torque_ = 0;                      // N, N m for an entry of 1
-  double most_speed_ = 0, most_spin_ = 0, reach_ = 0;  // m/s, rad/s, m
-  const double* start_[kMaxHands] = {};                // [num_joints] rad, null: all 0
+  double force_ = 0, torque_ = 0;        // N, N m for an entry of 1
+  const double* start_[kMaxHands] = {};  // [num_joints] rad, null: all 0
   Hand hands_[kMaxHands];
   Vec3 bases_[kMaxHands];
 };

@@ -26,9 +26,10 @@ constexpr double kFov = 75 * kPi / 180;
 
 }  // namespace
 
-HandTask::HandTask(const HandControlConfig& config, const Options& o, HandScene scene, size_t own_bytes)
+HandTask::HandTask(const HandControlConfig& config, const Options& o, int32_t max_steps, HandScene scene,
+                   size_t own_bytes)
     : engine_(engine_from(o)),
-      max_steps_(o.integer("max_steps")),
+      max_steps_(max_steps),
       own_bytes_(own_bytes),
       made_(freed(config, std::move(scene))),
       scene_(make_scene(adjusted(&made_))),
@@ -36,7 +37,7 @@ HandTask::HandTask(const HandControlConfig& config, const Options& o, HandScene 
   if (own_bytes % alignof(double) != 0)
     fail(Code::kInternal, "hand task: %zu bytes of its own state are not a multiple of %zu", own_bytes,
          alignof(double));
-  const bool copied = o.knows("left_model") && same_name(o.text("left_model"), "right_copy");
+  const bool copied = left_is_copied(o);
   for (int32_t i = 0; i < config.count; ++i) {
     mirrors_[i] = i > 0 && !copied && hands_.hand(i).robot->arm_links == 0;
     cameras_.push_back(palm_camera(i));

@@ -32,7 +32,8 @@ class HandTask : public Task {
  protected:
   // `own_bytes` of a task's own state stand before those of the hands' control, which begin with doubles:
   // Error(kInternal) unless it is a multiple of 8.
-  HandTask(const HandControlConfig& config, const Options& options, HandScene scene, size_t own_bytes);
+  HandTask(const HandControlConfig& config, const Options& options, int32_t max_steps, HandScene scene,
+           size_t own_bytes);
 
   // check_state of the task's own part.
   virtual void check_own_state(const void* state) const = 0;

@@ -11,16 +11,18 @@
 namespace rdm {
 namespace {
 
-constexpr OptionSpec kRows[] = {
-    legacy(text_option(
-        "coupling", "model", "model|paper",
-        "distal joints: 1.142 of the middle one within 0.142 rad, or (paper) the middle one's angle")),
+struct CouplingOptions {
+  bool paper;
 };
+constexpr auto kRows = row<&CouplingOptions::paper, false, true>(legacy(text_option(
+    "coupling", "model", "model|paper",
+    "distal joints: 1.142 of the middle one within 0.142 rad, or (paper) the middle one's angle")));
 
-constexpr OptionSpec kLeftRows[] = {
-    legacy(text_option("left_model", "mirror", "mirror|right_copy",
-                       "left hand: mirror image, or a second right hand")),
+struct LeftOptions {
+  bool right_copy;
 };
+constexpr auto kLeftRows = row<&LeftOptions::right_copy, false, true>(legacy(text_option(
+    "left_model", "mirror", "mirror|right_copy", "left hand: mirror image, or a second right hand")));
 
 }  // namespace
 
@@ -32,13 +34,17 @@ void add_left_hand_options(OptionTable& table) {
   table.add(kLeftRows);
 }
 
+bool left_is_copied(const Options& options) {
+  return options.knows(kLeftRows.specs[0].key) && kLeftRows.read(options).right_copy;
+}
+
 ArticulationDef make_hand(const ChosenHand& chosen, const Options& options, int32_t i, int32_t first,
                           int32_t material, DynamicsDraws* draws) {
   const Robot& robot = chosen.robot();
   char prefix[16];
   std::snprintf(prefix, sizeof prefix, "%s_", kSideNames[i]);
   ArticulationDef def = make_articulation(robot, chosen.side, chosen.X_WB, prefix);
-  if (same_name(options.text("coupling"), "paper"))
+  if (kRows.read(options).paper)
     for (LinkDef& link : def.links)
       if (link.joint.coupled_to >= 0 && link.joint.slack > 0) {  // tendons; belts and gears have no slack
         link.joint.ratio = 1;

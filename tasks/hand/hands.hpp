@@ -54,6 +54,7 @@ struct Hand {
 
 void add_hand_options(OptionTable& table);
 void add_left_hand_options(OptionTable& table);  // beside those, where there is a left hand
+bool left_is_copied(const Options& options);     // it is a second right hand; false without a left one
 
 // Hand i as the options want it, its names beginning with "right_" or "left_".
 // Its joints begin at flat link `first`.

@@ -18,23 +18,45 @@ constexpr double kRaise = 0.005;  // m a time, when no draw was clear
 constexpr int kMaxRaises = 100;
 constexpr int kRings = 20, kPlaces = 8;  // aside: circles kRaise apart, places on each
 
-constexpr OptionSpec kRows[] = {
-    text_option("goal_rotation", "random", "random|fixed", "rotation of the goal, redrawn at each reset"),
-    drawable(number_option("object_damping", 0.1, 0, 100,
-                           "angular damping of the object, 1/s; stands for rolling friction")),
-    drawable(basic(number_option("object_scale", 1, 0.1, 10, "factor on the object's size; its mass stays"))),
-    legacy(flag_option("canonical_rotation", false, "rotation error with w >= 0 in the observation")),
-    flag_option(
-        "own_friction", false,
-        "the friction that the object's surface has, for friction.hand_object and friction.object_ground"),
-    drawable(number_option("friction.object_ground", 1, 0, 10, "friction coefficient of object and ground")),
+struct ObjectOptions : GoalOptions {
+  const char *object, *hull;  // texts of the Options
+  DrawnOption object_mass, object_damping, object_scale;
+  double start_x, start_y, start_z, goal_x, goal_y, goal_z;  // m
+  bool own_friction;
+  DrawnOption ground_friction;
 };
-
-StartRotation rotation_named(const char* name) {
-  return same_name(name, "random") ? StartRotation::kRandom
-         : same_name(name, "yaw")  ? StartRotation::kYaw
-                                   : StartRotation::kFixed;
-}
+constexpr auto kRows = option_rows<ObjectOptions>(
+    row<&ObjectOptions::object>(
+        basic(text_option("object", "", nullptr, "what is handled, an object's name (redman objects)"))),
+    row<&ObjectOptions::hull>(text_option(
+        "hull", kOctahedron, nullptr,
+        "points of object=hull, m, at most 32: x,y,z;x,y,z;... (redman hull makes them)", kHullTextSize - 1)),
+    row<&ObjectOptions::object_mass>(
+        drawable(basic(number_option("object_mass", 0, 0, 10, "mass of the object, kg; 0: its own")))),
+    row<&ObjectOptions::start_x>(number_option("start.x", 0, -10, 10, "start position, m")),
+    row<&ObjectOptions::start_y>(number_option("start.y", 0, -10, 10, "start position, m")),
+    row<&ObjectOptions::start_z>(number_option("start.z", 0, -10, 10, "start position, m")),
+    row<&ObjectOptions::goal_x>(number_option("goal.x", 0, -10, 10, "goal position, m")),
+    row<&ObjectOptions::goal_y>(number_option("goal.y", 0, -10, 10, "goal position, m")),
+    row<&ObjectOptions::goal_z>(number_option("goal.z", 0, -10, 10, "goal position, m")),
+    row<&GoalOptions::start_noise>(basic(
+        number_option("start_noise", 0.01, 0, 0.2, "half width of the start position's draw, m per axis"))),
+    row<&GoalOptions::start_rotation, StartRotation::kRandom, StartRotation::kYaw, StartRotation::kFixed>(
+        text_option("start_rotation", "random", "random|yaw|fixed",
+                    "rotation of the object at the start; yaw: about the vertical")),
+    row<&GoalOptions::random_goal, true, false>(text_option("goal_rotation", "random", "random|fixed",
+                                                            "rotation of the goal, redrawn at each reset")),
+    row<&ObjectOptions::object_damping>(drawable(number_option(
+        "object_damping", 0.1, 0, 100, "angular damping of the object, 1/s; stands for rolling friction"))),
+    row<&ObjectOptions::object_scale>(drawable(
+        basic(number_option("object_scale", 1, 0.1, 10, "factor on the object's size; its mass stays")))),
+    row<&GoalOptions::canonical_rotation>(
+        legacy(flag_option("canonical_rotation", false, "rotation error with w >= 0 in the observation"))),
+    row<&ObjectOptions::own_friction>(flag_option(
+        "own_friction", false,
+        "the friction that the object's surface has, for friction.hand_object and friction.object_ground")),
+    row<&ObjectOptions::ground_friction>(drawable(
+        number_option("friction.object_ground", 1, 0, 10, "friction coefficient of object and ground"))));
 
 Quat draw_start(StartRotation kind, Stream& stream) {
   if (kind == StartRotation::kRandom) return draw_rotation(stream);
@@ -48,51 +70,43 @@ void check_goal(const GoalState& state) {
 }
 
 void add_object_options(const ObjectPlace& place, OptionTable& table) {
-  table.add(basic(
-      text_option("object", place.object, nullptr, "what is handled, an object's name (redman objects)")));
-  table.add(text_option("hull", kOctahedron, nullptr,
-                        "points of object=hull, m, at most 32: x,y,z;x,y,z;... (redman hull makes them)",
-                        kHullTextSize - 1));
-  table.add(
-      drawable(basic(number_option("object_mass", place.mass, 0, 10, "mass of the object, kg; 0: its own"))));
-  constexpr const char* kAxes[] = {"x", "y", "z"};
-  for (int i = 0; i < 3; ++i)
-    table.add("start", kAxes[i], nullptr, number_option("", place.start[i], -10, 10, "start position, m"));
-  for (int i = 0; i < 3; ++i)
-    table.add("goal", kAxes[i], nullptr, number_option("", place.goal[i], -10, 10, "goal position, m"));
-  table.add(basic(number_option("start_noise", place.noise, 0, 0.2,
-                                "half width of the start position's draw, m per axis")));
-  table.add(text_option("start_rotation", place.start_rotation, "random|yaw|fixed",
-                        "rotation of the object at the start; yaw: about the vertical"));
-  table.add(kRows);
+  table.add(kRows.with<&ObjectOptions::object>(place.object)
+                .with<&ObjectOptions::object_mass>(place.mass)
+                .with<&ObjectOptions::start_x>(place.start.x)
+                .with<&ObjectOptions::start_y>(place.start.y)
+                .with<&ObjectOptions::start_z>(place.start.z)
+                .with<&ObjectOptions::goal_x>(place.goal.x)
+                .with<&ObjectOptions::goal_y>(place.goal.y)
+                .with<&ObjectOptions::goal_z>(place.goal.z)
+                .with<&GoalOptions::start_noise>(place.noise)
+                .with<&GoalOptions::start_rotation>(place.start_rotation));
 }
 
-ObjectGoal object_goal_from(const Options& o) {
+ObjectGoal object_goal_from(const Options& options) {
+  const ObjectOptions o = kRows.read(options);
   ObjectGoal g;
-  g.start = {o.number("start.x"), o.number("start.y"), o.number("start.z")};
-  g.goal = {o.number("goal.x"), o.number("goal.y"), o.number("goal.z")};
-  g.start_noise = o.number("start_noise");
-  g.start_rotation = rotation_named(o.text("start_rotation"));
-  g.random_goal = same_name(o.text("goal_rotation"), "random");
-  g.canonical_rotation = o.flag("canonical_rotation");
+  static_cast<GoalOptions&>(g) = o;
+  g.start = {o.start_x, o.start_y, o.start_z};
+  g.goal = {o.goal_x, o.goal_y, o.goal_z};
   return g;
 }
 
-void add_object(const Options& o, HandScene* scene) {
-  const Pose start{object_goal_from(o).start, {}};
-  const double mass = o.number("object_mass"), scale = o.number("object_scale");
-  const ObjectRef object(find_object(o.text("object")));
+void add_object(const Options& options, HandScene* scene) {
+  const ObjectOptions o = kRows.read(options);
+  const Pose start{{o.start_x, o.start_y, o.start_z}, {}};
+  const double mass = o.object_mass.middle, scale = o.object_scale.middle;
+  const ObjectRef object(find_object(o.object));
   BodyDef body = same_name(object->name, "hull")
-                     ? make_hull_body(o.text("hull"), "object", start, mass, scale, kObject)
+                     ? make_hull_body(o.hull, "object", start, mass, scale, kObject)
                      : make_object_body(*object, "object", start, mass, scale, kObject);
-  body.angular_damping = o.number("object_damping");
+  body.angular_damping = o.object_damping.middle;
   const auto index = static_cast<int32_t>(scene->bodies.size());
   scene->bodies.push_back(body);
-  scene->draws.add(o, "object_mass", Drawn::kBodyMass, index);
-  scene->draws.add(o, "object_damping", Drawn::kBodyDamping, index);
-  scene->draws.add(o, "object_scale", Drawn::kBodySize, index);
-  set_friction(scene, kObject, kGround, o, "friction.object_ground");
-  if (!o.flag("own_friction")) return;
+  scene->draws.add(o.object_mass, Drawn::kBodyMass, index);
+  scene->draws.add(o.object_damping, Drawn::kBodyDamping, index);
+  scene->draws.add(o.object_scale, Drawn::kBodySize, index);
+  set_friction(scene, kObject, kGround, o.ground_friction);
+  if (!o.own_friction) return;
   for (const int32_t other : {kRightHand, kLeftHand, kGround})
     set_friction(scene, kObject, other, object->material.friction);
 }

@@ -22,12 +22,15 @@ struct ObjectPlace {
 
 enum class StartRotation : int32_t { kFixed = 0, kYaw, kRandom };
 
-// Constant of a task. The object is body 0.
-struct ObjectGoal {
-  Vec3 start, goal;
-  double start_noise;
+// How start and goal are drawn and seen, by the options.
+struct GoalOptions {
+  double start_noise;  // m
   StartRotation start_rotation;
   bool random_goal, canonical_rotation;
+};
+// Constant of a task. The object is body 0.
+struct ObjectGoal : GoalOptions {
+  Vec3 start, goal;
   bool standing = false;  // ObjectPlace::standing
 };
 

@@ -31,23 +31,33 @@ const SingleHandConfig kConfig = {{.count = 1, .bases = {{{0, 0, 0.5}, {}}}},
                                   {.start = {0, -0.39, 0.60}, .goal = {0, -0.39, 0.56}, .mass = 0.151},
                                   0.2};
 
-constexpr OptionSpec kRows[] = {
-    number_option("action_price", 0.0002, 0, 1, "reward: times the sum of the action's squares"),
-    basic(number_option(
+enum class Force { kAny, kLiteral, kObject };  // of which cost tells
+struct ReorientOptions {
+  double action_price, turn_reward, success_bonus, success_angle, fall_distance;  // 1, 1/rad, 1, rad, m
+  Force cost_mode;
+  double force_threshold;  // N
+};
+constexpr auto kRows = option_rows<ReorientOptions>(
+    row<&ReorientOptions::action_price>(
+        number_option("action_price", 0.0002, 0, 1, "reward: times the sum of the action's squares")),
+    row<&ReorientOptions::turn_reward>(basic(number_option(
         "turn_reward", 0, 0, 1000,
         "reward per rad that the rotation error shrinks in a step, less the same where it grows; "
-        "not the paper's, for training")),
-    number_option("success_bonus", 250, 0, 1e6, "reward at the goal rotation"),
-    basic(number_option("success_angle", 0.1, 0, 3.2, "rotation error that counts as success, rad")),
-    basic(number_option("fall_distance", 0.4, 0.01, 100,
-                        "the episode ends with the object so far from the goal, m")),
-    legacy(text_option(
-        "cost_mode", "default", "default|paper|literal|object",
-        "default, paper: any fingertip's force, another finger's too; object: the object's alone; "
-        "literal: the "
-        "largest of 15 signed numbers, forces and torques of two fingers and a force")),
-    basic(number_option("force_threshold", 0.5, 0, 1000, "cost: a fingertip's contact force above, N")),
-};
+        "not the paper's, for training"))),
+    row<&ReorientOptions::success_bonus>(
+        number_option("success_bonus", 250, 0, 1e6, "reward at the goal rotation")),
+    row<&ReorientOptions::success_angle>(
+        basic(number_option("success_angle", 0.1, 0, 3.2, "rotation error that counts as success, rad"))),
+    row<&ReorientOptions::fall_distance>(basic(number_option(
+        "fall_distance", 0.4, 0.01, 100, "the episode ends with the object so far from the goal, m"))),
+    row<&ReorientOptions::cost_mode, Force::kAny, Force::kAny, Force::kLiteral, Force::kObject>(
+        legacy(text_option(
+            "cost_mode", "default", "default|paper|literal|object",
+            "default, paper: any fingertip's force, another finger's too; object: the object's alone; "
+            "literal: the "
+            "largest of 15 signed numbers, forces and torques of two fingers and a force"))),
+    row<&ReorientOptions::force_threshold>(
+        basic(number_option("force_threshold", 0.5, 0, 1000, "cost: a fingertip's contact force above, N"))));
 
 enum : int { kCost, kFingertipForce, kObjectForce, kNumCosts };
 constexpr CostSpec kCosts[kNumCosts] = {
@@ -65,16 +75,7 @@ void add_options(OptionTable& table) {
 
 class Reorient final : public SingleHand {
  public:
-  explicit Reorient(const Options& o)
-      : SingleHand(kConfig, o, sizeof(TurnState)),
-        price_(o.number("action_price")),
-        turn_reward_(o.number("turn_reward")),
-        bonus_(o.number("success_bonus")),
-        tolerance_(o.number("success_angle")),
-        fall_distance_(o.number("fall_distance")),
-        threshold_(o.number("force_threshold")),
-        literal_(same_name(o.text("cost_mode"), "literal")),
-        object_only_(same_name(o.text("cost_mode"), "object")) {}
+  explicit Reorient(const Options& o) : SingleHand(kConfig, o, sizeof(TurnState)), options_(kRows.read(o)) {}
 
   void reset(World& world, void* state, Stream& stream) const override {
     SingleHand::reset(world, state, stream);
@@ -103,9 +104,11 @@ class Reorient final : public SingleHand {
     double squares = 0;
     for (int i = 0; i < hand().num_actions; ++i)
       squares += static_cast<double>(step.action[i]) * static_cast<double>(step.action[i]);
-    v->reward = reorient_reward(theta, squares, price_, bonus_, tolerance_) + turn_reward_ * (s.turn - theta);
-    v->success = theta <= tolerance_;
-    v->terminated = norm(X.p - goal().goal) >= fall_distance_;
+    v->reward = reorient_reward(theta, squares, options_.action_price, options_.success_bonus,
+                                options_.success_angle) +
+                options_.turn_reward * (s.turn - theta);
+    v->success = theta <= options_.success_angle;
+    v->terminated = norm(X.p - goal().goal) >= options_.fall_distance;
     judge_force(step.world, v);
     if (v->success) draw_goal(goal(), &s.goal, s.goals);
     s.turn = v->success ? turn_left(step.world, s) : theta;
@@ -120,12 +123,14 @@ class Reorient final : public SingleHand {
         number = std::max(number, k < 3 ? w.force[k] : w.torque[k - 3]);
     }
     const double pressed = press(world);
-    v->cost[kObjectForce] = pressed > threshold_;
+    v->cost[kObjectForce] = pressed > options_.force_threshold;
     v->cost_raw[kObjectForce] = pressed;
-    v->cost[kFingertipForce] = most > threshold_;
+    v->cost[kFingertipForce] = most > options_.force_threshold;
     v->cost_raw[kFingertipForce] = most;
-    v->cost_raw[kCost] = literal_ ? number : object_only_ ? pressed : most;
-    v->cost[kCost] = v->cost_raw[kCost] > threshold_;
+    v->cost_raw[kCost] = options_.cost_mode == Force::kLiteral  ? number
+                         : options_.cost_mode == Force::kObject ? pressed
+                                                                : most;
+    v->cost[kCost] = v->cost_raw[kCost] > options_.force_threshold;
   }
 
   // Largest contact force between the object and one fingertip, N. The tips' sensors feel other fingers too.
@@ -146,8 +151,7 @@ class Reorient final : public SingleHand {
     return most;
   }
 
-  double price_, turn_reward_, bonus_, tolerance_, fall_distance_, threshold_;
-  bool literal_, object_only_;
+  ReorientOptions options_;
 };
 
 const CameraSpec kCameras[] = {

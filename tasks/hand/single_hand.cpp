@@ -5,9 +5,15 @@
 namespace rdm {
 namespace {
 
-constexpr OptionSpec kRows[] = {
-    basic(integer_option("max_steps", 74, 1, 100000, "control steps of an episode")),
+struct SingleHandOptions {
+  double joint_noise;
+  int32_t max_steps;
 };
+constexpr auto kRows = option_rows<SingleHandOptions>(
+    row<&SingleHandOptions::joint_noise>(
+        number_option("joint_noise", 0, 0, 1, "share of each joint's range that is drawn at a reset")),
+    row<&SingleHandOptions::max_steps>(
+        basic(integer_option("max_steps", 74, 1, 100000, "control steps of an episode"))));
 
 HandScene make_scene_def(const SingleHandConfig& config, const Options& o) {
   HandScene s = make_hand_scene(config.hands, o);
@@ -19,15 +25,13 @@ HandScene make_scene_def(const SingleHandConfig& config, const Options& o) {
 
 void add_single_hand_options(const SingleHandConfig& config, OptionTable& table) {
   add_object_options(config.place, table);
-  table.add(number_option("joint_noise", config.joint_noise, 0, 1,
-                          "share of each joint's range that is drawn at a reset"));
-  table.add(kRows);
+  table.add(kRows.with<&SingleHandOptions::joint_noise>(config.joint_noise));
   add_hand_control_options(config.hands, table);
 }
 
 SingleHand::SingleHand(const SingleHandConfig& config, const Options& o, size_t state_size)
-    : HandTask(config.hands, o, make_scene_def(config, o), state_size),
-      joint_noise_(o.number("joint_noise")),
+    : HandTask(config.hands, o, kRows.read(o).max_steps, make_scene_def(config, o), state_size),
+      joint_noise_(kRows.read(o).joint_noise),
       goal_(object_goal_from(o)) {
   goal_.standing = config.place.standing;
   FieldTable& fields = own_fields();

@@ -22,7 +22,7 @@ void add_prop_options(const HandControlConfig& config, int32_t max_steps, int32_
 }
 
 PropTask::PropTask(const HandControlConfig& config, const Options& o, HandScene scene, size_t own_bytes)
-    : HandTask(config, o, std::move(scene), own_bytes),
+    : HandTask(config, o, o.integer("max_steps"), std::move(scene), own_bytes),
       reset_noise_(o.number("reset_noise")),
       joint_noise_(o.number("joint_noise")) {
   hands().add_fields(own_fields());

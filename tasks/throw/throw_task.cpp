@@ -65,7 +65,7 @@ void flat_throw_mean(const HandControl& hands, bool window, float* mean) {
 }
 
 ThrowTask::ThrowTask(const ThrowConfig& config, const Options& o, HandScene scene)
-    : HandTask(config.hands, o, std::move(scene), sizeof(State)),
+    : HandTask(config.hands, o, o.integer("max_steps"), std::move(scene), sizeof(State)),
       base_limit_(config.hands.flying ? o.number("base_limit") : 0),
       setup_(throw_setup_from(o)) {
   hands().add_fields(own_fields());

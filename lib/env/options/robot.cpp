@@ -72,24 +72,24 @@ void apply_robot_options(const Options& options, const Robot& robot, const char*
       if (!options.given(key.text)) continue;
       override_joint(def, prefix, link.joint, row.field, options.number(key.text));
       if (row.field != JointField::kArmature)
-        draws->add(options, key.text, kDrawnFields[static_cast<int>(row.field)], first + i);
+        draws->add(drawn_option(options, key.text), kDrawnFields[static_cast<int>(row.field)], first + i);
     }
     const OptionTable::Key key = OptionTable::make_key("link", link.name, "mass");
     if (link.mass == 0 || !options.given(key.text)) continue;
     override_mass(def, prefix, link.name, options.number(key.text));
-    draws->add(options, key.text, Drawn::kLinkMass, first + i);
+    draws->add(drawn_option(options, key.text), Drawn::kLinkMass, first + i);
   }
   scale_joints(def, JointField::kKp, options.number("scale.kp"));
   scale_joints(def, JointField::kKd, options.number("scale.kd"));
   scale_joints(def, JointField::kFriction, options.number("scale.friction"));
   scale_joints(def, JointField::kEffort, options.number("scale.effort"));
   scale_mass(def, options.number("scale.mass"));
-  draws->add(options, "scale.kp", Drawn::kLinkKp, first, robot.links.count);
-  draws->add(options, "scale.kd", Drawn::kLinkKd, first, robot.links.count);
-  draws->add(options, "scale.friction", Drawn::kLinkFriction, first, robot.links.count);
-  draws->add(options, "scale.effort", Drawn::kLinkEffort, first, robot.links.count);
-  draws->add(options, "scale.mass", Drawn::kLinkMass, first, robot.links.count);
-  draws->add(options, "scale.mass", Drawn::kBaseMass, index);
+  draws->add(drawn_option(options, "scale.kp"), Drawn::kLinkKp, first, robot.links.count);
+  draws->add(drawn_option(options, "scale.kd"), Drawn::kLinkKd, first, robot.links.count);
+  draws->add(drawn_option(options, "scale.friction"), Drawn::kLinkFriction, first, robot.links.count);
+  draws->add(drawn_option(options, "scale.effort"), Drawn::kLinkEffort, first, robot.links.count);
+  draws->add(drawn_option(options, "scale.mass"), Drawn::kLinkMass, first, robot.links.count);
+  draws->add(drawn_option(options, "scale.mass"), Drawn::kBaseMass, index);
 }
 
 }  // namespace rdm
