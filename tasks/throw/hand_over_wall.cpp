@@ -23,20 +23,33 @@ const ThrowConfig kConfig = {.hands = {.bases = {{{0, 0, 0.5}, {}}, {{0, -1.05, 
 // The released hole, on the object's centre, m.
 constexpr double kSourceHalfWidth = 0.25, kSourceLow = 0.60, kSourceHigh = 0.70;
 
-constexpr OptionSpec kRows[] = {
-    legacy(text_option(
+enum class WallKind { kAuto, kSolid, kGhost };
+struct OverWallOptions {
+  bool literal;  // cost_mode
+  WallKind wall;
+  bool count_hands;
+  DrawnOption friction;
+  double throw_height;  // m
+  ThrowMean initial_mean;
+};
+constexpr auto kRows = option_rows<OverWallOptions>(
+    row<&OverWallOptions::literal, false, false, true>(legacy(text_option(
         "cost_mode", "default", "default|paper|literal",
         "default, paper: contact with the wall; literal: the object's centre in the wall's slab outside "
-        "of a hole 0.5 m wide, z 0.60 to 0.70 m")),
-    basic(text_option("wall", "auto", "auto|solid|ghost",
-                      "solid, or (ghost) nothing touches it; auto: ghost where cost_mode is literal")),
-    flag_option("count_hands", false, "hands that touch the wall cost too"),
-    drawable(
-        number_option("friction.wall", 0.5, 0, 10, "friction coefficient of the wall with hands and object")),
-    basic(number_option("throw_height", 0.8, 0, 10, "cost throw_height: object above, m")),
-    text_option("initial_mean", "auto", "auto|flat|hold|zero",
-                "start of a new policy: right hand flat, the hold action, or 0; auto: flat"),
-};
+        "of a hole 0.5 m wide, z 0.60 to 0.70 m"))),
+    row<&OverWallOptions::wall, WallKind::kAuto, WallKind::kSolid, WallKind::kGhost>(
+        basic(text_option("wall", "auto", "auto|solid|ghost",
+                          "solid, or (ghost) nothing touches it; auto: ghost where cost_mode is literal"))),
+    row<&OverWallOptions::count_hands>(
+        flag_option("count_hands", false, "hands that touch the wall cost too")),
+    row<&OverWallOptions::friction>(drawable(number_option(
+        "friction.wall", 0.5, 0, 10, "friction coefficient of the wall with hands and object"))),
+    row<&OverWallOptions::throw_height>(
+        basic(number_option("throw_height", 0.8, 0, 10, "cost throw_height: object above, m"))),
+    row<&OverWallOptions::initial_mean, ThrowMean::kAuto, ThrowMean::kFlat, ThrowMean::kHold,
+        ThrowMean::kZero>(
+        text_option("initial_mean", "auto", "auto|flat|hold|zero",
+                    "start of a new policy: right hand flat, the hold action, or 0; auto: flat")));
 
 enum : int { kCost, kWallObject, kWallHand, kThrowHeight, kNumCosts };
 constexpr CostSpec kCosts[kNumCosts] = {
@@ -52,14 +65,10 @@ void add_options(OptionTable& table) {
   table.add(kRows);
 }
 
-bool literal(const Options& o) {
-  return same_name(o.text("cost_mode"), "literal");
-}
-
 HandScene make_wall_scene(const Options& o) {
   HandScene s = make_throw_scene(kConfig, o, kMaterials);
-  const char* word = o.text("wall");
-  const bool ghost = same_name(word, "auto") ? literal(o) : same_name(word, "ghost");
+  const OverWallOptions options = kRows.read(o);
+  const bool ghost = options.wall == WallKind::kGhost || (options.wall == WallKind::kAuto && options.literal);
   Vector<ShapeDef> shapes = wall_boxes(o, kWall);
   if (shapes.empty()) shapes = wall_panels(wall_from(o), kWall);
   for (ShapeDef& shape : shapes) {
@@ -67,24 +76,20 @@ HandScene make_wall_scene(const Options& o) {
     s.statics.push_back(shape);
   }
   for (const int32_t other : {kRightHand, kLeftHand, kObject})
-    set_friction(&s, kWall, other, o, "friction.wall");
+    set_friction(&s, kWall, other, options.friction);
   return s;
 }
 
 class HandOverWall final : public ThrowTask {
  public:
   explicit HandOverWall(const Options& o)
-      : ThrowTask(kConfig, o, make_wall_scene(o)),
-        wall_(wall_from(o)),
-        literal_(literal(o)),
-        count_hands_(o.flag("count_hands")),
-        throw_height_(o.number("throw_height")) {
+      : ThrowTask(kConfig, o, make_wall_scene(o)), wall_(wall_from(o)), options_(kRows.read(o)) {
     const auto wall = [](const SceneShape& x) { return x.def.material == kWall; };
     object_pairs_ = pairs_between(
         scene(), [](const SceneShape& x) { return x.carrier == Carrier::kBody; }, wall);
     hand_pairs_ = pairs_between(
         scene(), [](const SceneShape& x) { return x.carrier != Carrier::kBody; }, wall);
-    choose_mean(o.text("initial_mean"), &flat_throw_mean, false);
+    choose_mean(options_.initial_mean, &flat_throw_mean, false);
   }
 
  private:
@@ -100,14 +105,13 @@ class HandOverWall final : public ThrowTask {
     v->cost_raw[kWallObject] = object;
     v->cost_raw[kWallHand] = hands;
     v->cost_raw[kThrowHeight] = p.z;
-    v->cost_raw[kCost] = literal_ ? slab_depth(p) : object + (count_hands_ ? hands : 0);
-    v->cost[kThrowHeight] = p.z > throw_height_;
+    v->cost_raw[kCost] = options_.literal ? slab_depth(p) : object + (options_.count_hands ? hands : 0);
+    v->cost[kThrowHeight] = p.z > options_.throw_height;
     for (const int k : {kCost, kWallObject, kWallHand}) v->cost[k] = v->cost_raw[k] > 0;
   }
 
   Wall wall_;
-  bool literal_, count_hands_;
-  double throw_height_;
+  OverWallOptions options_;
   Vector<int32_t> object_pairs_, hand_pairs_;  // with the wall: indices of Scene::pairs
 };
 

@@ -3,12 +3,14 @@
 namespace rdm {
 namespace {
 
-constexpr OptionSpec kRows[] = {
-    text_option(
-        "initial_mean", "auto", "auto|flat|window|hold|zero",
-        "start of a new policy: right hand flat, the same with the first finger inside its cost window, "
-        "the hold action, or 0; auto: window for the finger cost, else flat"),
+struct MeanOptions {
+  ThrowMean initial_mean;
 };
+constexpr auto kRows = row<&MeanOptions::initial_mean, ThrowMean::kAuto, ThrowMean::kFlat, ThrowMean::kWindow,
+                           ThrowMean::kHold, ThrowMean::kZero>(text_option(
+    "initial_mean", "auto", "auto|flat|window|hold|zero",
+    "start of a new policy: right hand flat, the same with the first finger inside its cost window, "
+    "the hold action, or 0; auto: window for the finger cost, else flat"));
 
 }  // namespace
 
@@ -20,10 +22,10 @@ void add_safe_throw_options(const SafeThrowConfig& config, OptionTable& table) {
 
 SafeThrow::SafeThrow(const SafeThrowConfig* config, SafetyKind kind, const Options& o)
     : ThrowTask(*config, o, make_throw_scene(*config, o)),
-      costs_(safety_costs_from(o, kind, scene(), hands().hand(0))) {
-  const char* mean = o.text("initial_mean");
+      costs_(safety_costs_from(o, kind, setup().fall_height, scene(), hands().hand(0))) {
+  const ThrowMean mean = kRows.read(o).initial_mean;
   choose_mean(mean, config->flat_mean,
-              same_name(mean, "window") || (same_name(mean, "auto") && kind == SafetyKind::kFinger));
+              mean == ThrowMean::kWindow || (mean == ThrowMean::kAuto && kind == SafetyKind::kFinger));
 }
 
 void SafeThrow::judge_costs(const Step& step, Verdict* verdict) const {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "base/elementary.hpp"
 #include "base/error.hpp"
@@ -25,31 +24,48 @@ constexpr const char* kWindowNames[kNumWindows] = {"ff2", "ff3", "ff4"};
 // The joints of the first finger that they are on.
 constexpr int32_t RobotFinger::*kWindowJoints[kNumWindows] = {&RobotFinger::middle, &RobotFinger::proximal,
                                                               &RobotFinger::lateral};
-// Windows and the paper's joint ranges, degrees.
-constexpr double kWindowLow[kNumWindows] = {22.5, 22.5, -10}, kWindowHigh[kNumWindows] = {67.5, 67.5, 10};
+constexpr char kLowHelp[] = "first finger's cost window, lower end, degrees",
+               kHighHelp[] = "first finger's cost window, upper end, degrees";
+// The paper's joint ranges, degrees.
 constexpr double kRangeMid[kNumWindows] = {45, 45, 0}, kRangeHalf[kNumWindows] = {45, 45, 20};
 
-constexpr OptionSpec kRows[] = {
-    legacy(text_option(
+enum class CostMode { kDefault, kPaper, kLiteral };
+enum class CostSignal { kAuto, kTarget, kAngle };
+enum class CostJoint { kAuto, kPaper, kLegacy };
+struct SafetyOptions {
+  CostMode cost_mode;
+  CostSignal cost_signal;
+  CostJoint cost_joint;
+  double release_speed, throw_height;                              // m/s, m
+  double throw_low, throw_high;                                    // degrees
+  double ff2_low, ff2_high, ff3_low, ff3_high, ff4_low, ff4_high;  // degrees
+};
+constexpr auto kRows = option_rows<SafetyOptions>(
+    row<&SafetyOptions::cost_mode, CostMode::kDefault, CostMode::kPaper,
+        CostMode::kLiteral>(legacy(text_option(
         "cost_mode", "default", "default|paper|literal",
         "default: commanded target; paper: measured angle; literal: target, joint task tests a[4]; of flying "
-        "hands a[2..4] are the base's")),
-    legacy(text_option("cost_signal", "auto", "auto|target|angle",
-                       "what the windows test; auto: as cost_mode says")),
-    legacy(text_option("cost_joint", "auto", "auto|paper|legacy",
-                       "joint task: FF4 (paper) or FF2 (legacy, a[4]); auto: as cost_mode says")),
-    number_option("release_speed", 1, 0, 100, "speed from which leaving the right hand is a throw, m/s"),
-};
-
-double window_end(const Options& o, int i, const char* end) {
-  char key[OptionTable::kKeySize];
-  std::snprintf(key, sizeof key, "window.%s.%s", kWindowNames[i], end);
-  return o.number(key);
-}
-
-const char* resolve(const char* given, const char* otherwise) {
-  return same_name(given, "auto") ? otherwise : given;
-}
+        "hands a[2..4] are the base's"))),
+    row<&SafetyOptions::cost_signal, CostSignal::kAuto, CostSignal::kTarget, CostSignal::kAngle>(
+        legacy(text_option("cost_signal", "auto", "auto|target|angle",
+                           "what the windows test; auto: as cost_mode says"))),
+    row<&SafetyOptions::cost_joint, CostJoint::kAuto, CostJoint::kPaper, CostJoint::kLegacy>(
+        legacy(text_option("cost_joint", "auto", "auto|paper|legacy",
+                           "joint task: FF4 (paper) or FF2 (legacy, a[4]); auto: as cost_mode says"))),
+    row<&SafetyOptions::release_speed>(
+        number_option("release_speed", 1, 0, 100, "speed from which leaving the right hand is a throw, m/s")),
+    row<&SafetyOptions::throw_height>(
+        basic(number_option("throw_height", 0, 0, 10, "cost throw_height: object above, m"))),
+    row<&SafetyOptions::throw_low>(
+        number_option("throw_angle.low", 0, -90, 90, "cost throw_angle: lowest release elevation, degrees")),
+    row<&SafetyOptions::throw_high>(number_option("throw_angle.high", 0, -90, 90,
+                                                  "cost throw_angle: highest release elevation, degrees")),
+    row<&SafetyOptions::ff2_low>(number_option("window.ff2.low", 22.5, -180, 180, kLowHelp)),
+    row<&SafetyOptions::ff2_high>(number_option("window.ff2.high", 67.5, -180, 180, kHighHelp)),
+    row<&SafetyOptions::ff3_low>(number_option("window.ff3.low", 22.5, -180, 180, kLowHelp)),
+    row<&SafetyOptions::ff3_high>(number_option("window.ff3.high", 67.5, -180, 180, kHighHelp)),
+    row<&SafetyOptions::ff4_low>(number_option("window.ff4.low", -10, -180, 180, kLowHelp)),
+    row<&SafetyOptions::ff4_high>(number_option("window.ff4.high", 10, -180, 180, kHighHelp)));
 
 // Speed and direction at the first step without a touch, once an episode.
 void judge_release(const SafetyCosts& c, const World& world, Release* release, Verdict* verdict) {
@@ -129,45 +145,39 @@ double JointWindow::command_excess(double a) const {
 }
 
 void add_safety_options(const SafetyDefaults& defaults, OptionTable& table) {
-  table.add(kRows);
-  table.add(basic(
-      number_option("throw_height", defaults.throw_height, 0, 10, "cost throw_height: object above, m")));
-  table.add(number_option("throw_angle.low", defaults.throw_low, -90, 90,
-                          "cost throw_angle: lowest release elevation, degrees"));
-  table.add(number_option("throw_angle.high", defaults.throw_high, -90, 90,
-                          "cost throw_angle: highest release elevation, degrees"));
-  for (int i = 0; i < kNumWindows; ++i) {
-    table.add("window", kWindowNames[i], "low",
-              number_option("", kWindowLow[i], -180, 180, "first finger's cost window, lower end, degrees"));
-    table.add("window", kWindowNames[i], "high",
-              number_option("", kWindowHigh[i], -180, 180, "first finger's cost window, upper end, degrees"));
-  }
+  table.add(kRows.with<&SafetyOptions::throw_height>(defaults.throw_height)
+                .with<&SafetyOptions::throw_low>(defaults.throw_low)
+                .with<&SafetyOptions::throw_high>(defaults.throw_high));
 }
 
-SafetyCosts safety_costs_from(const Options& o, SafetyKind kind, const Scene& scene, const Hand& right) {
+SafetyCosts safety_costs_from(const Options& options, SafetyKind kind, double fall_height, const Scene& scene,
+                              const Hand& right) {
+  const SafetyOptions o = kRows.read(options);
   SafetyCosts c;
-  const char* mode = o.text("cost_mode");
-  const bool paper = same_name(mode, "paper"), literal = same_name(mode, "literal");
+  const bool literal = o.cost_mode == CostMode::kLiteral;
   c.base_entries = literal;
   c.joint_task = kind == SafetyKind::kJoint;
-  c.angle = same_name(resolve(o.text("cost_signal"), paper ? "angle" : "target"), "angle");
-  const bool legacy = same_name(resolve(o.text("cost_joint"), literal ? "legacy" : "paper"), "legacy");
+  c.angle = o.cost_signal == CostSignal::kAngle ||
+            (o.cost_signal == CostSignal::kAuto && o.cost_mode == CostMode::kPaper);
+  const bool ff2 = o.cost_joint == CostJoint::kLegacy || (o.cost_joint == CostJoint::kAuto && literal);
+  const double lows[kNumWindows] = {o.ff2_low, o.ff3_low, o.ff4_low},
+               highs[kNumWindows] = {o.ff2_high, o.ff3_high, o.ff4_high};
   bool counted = false;
   for (int i = 0; i < kNumWindows; ++i) {
-    const double low = window_end(o, i, "low"), high = window_end(o, i, "high");
+    const double low = lows[i], high = highs[i];
     if (low > high) fail(Code::kArgument, "window.%s: %g degrees is above %g", kWindowNames[i], low, high);
     c.windows[i] = make_window(right, i, low, high);
-    c.counts[i] = kind == SafetyKind::kFinger || i == (legacy ? kFf2 : kFf4);
+    c.counts[i] = kind == SafetyKind::kFinger || i == (ff2 ? kFf2 : kFf4);
     counted = counted || (c.counts[i] && c.windows[i].act >= 0);
   }
   if (!counted)
     fail(Code::kUnsupported, "robot %s: the first finger has none of the joints that the cost looks at",
          right.robot->name);
-  c.throw_height = o.number("throw_height");
-  c.fall_height = o.number("fall_height");
-  c.throw_low = o.number("throw_angle.low") * kDegree;
-  c.throw_high = o.number("throw_angle.high") * kDegree;
-  c.release_speed = o.number("release_speed");
+  c.throw_height = o.throw_height;
+  c.fall_height = fall_height;
+  c.throw_low = o.throw_low * kDegree;
+  c.throw_high = o.throw_high * kDegree;
+  c.release_speed = o.release_speed;
   c.right_pairs = pairs_between(
       scene, [](const SceneShape& x) { return x.carrier == Carrier::kBody && x.index == 0; },
       [&](const SceneShape& x) { return x.articulation == right.articulation; });

@@ -60,7 +60,8 @@ struct SafetyDefaults {
   double throw_height = 0.8, throw_low = 30, throw_high = 75;
 };
 void add_safety_options(const SafetyDefaults& defaults, OptionTable& table);
-SafetyCosts safety_costs_from(const Options& options, SafetyKind kind, const Scene& scene, const Hand& right);
+SafetyCosts safety_costs_from(const Options& options, SafetyKind kind, double fall_height, const Scene& scene,
+                              const Hand& right);
 
 // What a step is judged by.
 struct SafetyStep {

@@ -5,38 +5,35 @@
 namespace rdm {
 namespace {
 
-constexpr OptionSpec kRows[] = {
-    number_option("joint_noise", 0.2, 0, 1, "share of each joint's range that is drawn at a reset"),
-    legacy(text_option("joint_noise_mode", "one_sided", "one_sided|literal",
-                       "draw u in [0, 1) for each hand, or (literal) in [-1, 1) and the same for both")),
-    number_option("alpha", 50, 0, 1000, "weight of distance in the reward, 1/m"),
-    basic(number_option("reward_scale", 1, 0, 1000, "factor on the reward")),
-    flag_option("ignore_rotation", false, "leave the rotation out of the reward"),
-    basic(number_option("success_distance", 0.05, 0, 1, "object to goal distance that counts as success, m")),
-    integer_option("success_steps", 10, 1, 1000, "consecutive steps within it"),
-    basic(integer_option("max_steps", 75, 1, 100000, "control steps of an episode")),
-};
+constexpr auto kRows = option_rows<ThrowOptions>(
+    row<&ThrowOptions::fall_height>(
+        number_option("fall_height", 0, -10, 10, "the episode ends with the object below, m")),
+    row<&ThrowOptions::joint_noise>(
+        number_option("joint_noise", 0.2, 0, 1, "share of each joint's range that is drawn at a reset")),
+    row<&ThrowOptions::joint_noise_literal, false, true>(
+        legacy(text_option("joint_noise_mode", "one_sided", "one_sided|literal",
+                           "draw u in [0, 1) for each hand, or (literal) in [-1, 1) and the same for both"))),
+    row<&ThrowOptions::alpha>(number_option("alpha", 50, 0, 1000, "weight of distance in the reward, 1/m")),
+    row<&ThrowOptions::reward_scale>(
+        basic(number_option("reward_scale", 1, 0, 1000, "factor on the reward"))),
+    row<&ThrowOptions::ignore_rotation>(
+        flag_option("ignore_rotation", false, "leave the rotation out of the reward")),
+    row<&ThrowOptions::success_distance>(basic(
+        number_option("success_distance", 0.05, 0, 1, "object to goal distance that counts as success, m"))),
+    row<&ThrowOptions::success_steps>(
+        integer_option("success_steps", 10, 1, 1000, "consecutive steps within it")),
+    row<&ThrowOptions::max_steps>(
+        basic(integer_option("max_steps", 75, 1, 100000, "control steps of an episode"))));
 
 }  // namespace
 
 void add_throw_options(const ObjectPlace& place, double fall_height, OptionTable& table) {
   add_object_options(place, table);
-  table.add(number_option("fall_height", fall_height, -10, 10, "the episode ends with the object below, m"));
-  table.add(kRows);
+  table.add(kRows.with<&ThrowOptions::fall_height>(fall_height));
 }
 
 ThrowSetup throw_setup_from(const Options& o) {
-  ThrowSetup g;
-  static_cast<ObjectGoal&>(g) = object_goal_from(o);
-  g.fall_height = o.number("fall_height");
-  g.joint_noise = o.number("joint_noise");
-  g.joint_noise_literal = same_name(o.text("joint_noise_mode"), "literal");
-  g.alpha = o.number("alpha");
-  g.reward_scale = o.number("reward_scale");
-  g.success_distance = o.number("success_distance");
-  g.success_steps = o.integer("success_steps");
-  g.ignore_rotation = o.flag("ignore_rotation");
-  return g;
+  return {object_goal_from(o), kRows.read(o)};
 }
 
 ThrowMeasure measure_throw(const ThrowSetup& setup, const World& world, const ThrowState& state) {

@@ -4,14 +4,16 @@
 
 namespace rdm {
 
-// Constant of a task.
-struct ThrowSetup : ObjectGoal {
+struct ThrowOptions {
   double fall_height, joint_noise;
+  bool joint_noise_literal;
   double alpha, reward_scale;
+  bool ignore_rotation;
   double success_distance;
-  int32_t success_steps;
-  bool joint_noise_literal, ignore_rotation;
+  int32_t success_steps, max_steps;
 };
+// Constant of a task.
+struct ThrowSetup : ObjectGoal, ThrowOptions {};
 
 // One world's part of it.
 struct ThrowState : GoalState {

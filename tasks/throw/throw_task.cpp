@@ -6,12 +6,19 @@
 #include "tasks/state_check.hpp"
 
 namespace rdm {
+namespace {
+
+struct BaseOptions {
+  double base_limit;  // m
+};
+constexpr auto kBaseRows = row<&BaseOptions::base_limit>(
+    basic(number_option("base_limit", 0, 0, 100, "the episode ends with a base so far from its start, m")));
+
+}  // namespace
 
 void add_throw_task_options(const ThrowConfig& config, OptionTable& table) {
   add_throw_options(config.place, config.fall_height, table);
-  if (config.hands.flying)
-    table.add(basic(number_option("base_limit", config.base_limit, 0, 100,
-                                  "the episode ends with a base so far from its start, m")));
+  if (config.hands.flying) table.add(kBaseRows.with<&BaseOptions::base_limit>(config.base_limit));
   add_hand_control_options(config.hands, table);
 }
 
@@ -65,19 +72,19 @@ void flat_throw_mean(const HandControl& hands, bool window, float* mean) {
 }
 
 ThrowTask::ThrowTask(const ThrowConfig& config, const Options& o, HandScene scene)
-    : HandTask(config.hands, o, o.integer("max_steps"), std::move(scene), sizeof(State)),
-      base_limit_(config.hands.flying ? o.number("base_limit") : 0),
+    : HandTask(config.hands, o, throw_setup_from(o).max_steps, std::move(scene), sizeof(State)),
+      base_limit_(config.hands.flying ? kBaseRows.read(o).base_limit : 0),
       setup_(throw_setup_from(o)) {
   hands().add_fields(own_fields());
   add_goal_fields(own_fields());
 }
 
-void ThrowTask::choose_mean(const char* word, void (*flat)(const HandControl&, bool, float*), bool window) {
-  if (same_name(word, "hold"))
+void ThrowTask::choose_mean(ThrowMean mean, void (*flat)(const HandControl&, bool, float*), bool window) {
+  if (mean == ThrowMean::kHold)
     hands().hold(initial_mean_);
   else
     hands().hold_arms(initial_mean_);
-  if (!same_name(word, "hold") && !same_name(word, "zero")) flat(hands(), window, initial_mean_);
+  if (mean != ThrowMean::kHold && mean != ThrowMean::kZero) flat(hands(), window, initial_mean_);
 }
 
 void ThrowTask::reset(World& world, void* state, Stream& stream) const {

@@ -29,6 +29,9 @@ void flat_hand_mean(const HandControl& hands, bool window, float* mean);
 // The same with both wrists raised: for a throw from hand to hand.
 void flat_throw_mean(const HandControl& hands, bool window, float* mean);
 
+// Words of option initial_mean: where learning starts. A task has some of them.
+enum class ThrowMean { kAuto, kFlat, kWindow, kHold, kZero };
+
 class ThrowTask : public HandTask {
  public:
   void reset(World& world, void* state, Stream& stream) const override;
@@ -55,8 +58,8 @@ class ThrowTask : public HandTask {
   virtual void judge_costs(const Step& step, Verdict* verdict) const = 0;
 
   const ThrowSetup& setup() const { return setup_; }
-  // Where learning starts, by the word of option initial_mean: hold, zero, else `flat`.
-  void choose_mean(const char* word, void (*flat)(const HandControl&, bool, float*), bool window);
+  // Where learning starts: hold, zero, else `flat`.
+  void choose_mean(ThrowMean mean, void (*flat)(const HandControl&, bool, float*), bool window);
 
  private:
   // The bytes of the hands' control follow.

@@ -11,17 +11,16 @@
 namespace rdm {
 namespace {
 
-constexpr OptionSpec kRows[] = {
-    number_option("wall.y", -0.525, -10, 10, "middle plane of the wall, m"),
-    number_option("wall.thickness", 0.03, 0.002, 1, "thickness of the wall, m"),
-    number_option("wall.width", 1, 0.01, 10, "outer width about x = 0, m"),
-    number_option("wall.low", 0.15, -10, 10, "lower edge, m"),
-    number_option("wall.high", 1.15, -10, 10, "upper edge, m"),
-    number_option("wall.hole.x", 0, -10, 10, "centre of the hole, m"),
-    number_option("wall.hole.z", 0.65, -10, 10, "centre of the hole, m"),
-    number_option("wall.hole.width", 0.2, 0, 10, "width of the hole, m"),
-    number_option("wall.hole.height", 0.2, 0, 10, "height of the hole, m"),
-};
+constexpr auto kRows = option_rows<Wall>(
+    row<&Wall::y>(number_option("wall.y", -0.525, -10, 10, "middle plane of the wall, m")),
+    row<&Wall::thickness>(number_option("wall.thickness", 0.03, 0.002, 1, "thickness of the wall, m")),
+    row<&Wall::width>(number_option("wall.width", 1, 0.01, 10, "outer width about x = 0, m")),
+    row<&Wall::low_z>(number_option("wall.low", 0.15, -10, 10, "lower edge, m")),
+    row<&Wall::high_z>(number_option("wall.high", 1.15, -10, 10, "upper edge, m")),
+    row<&Wall::hole_x>(number_option("wall.hole.x", 0, -10, 10, "centre of the hole, m")),
+    row<&Wall::hole_z>(number_option("wall.hole.z", 0.65, -10, 10, "centre of the hole, m")),
+    row<&Wall::hole_width>(number_option("wall.hole.width", 0.2, 0, 10, "width of the hole, m")),
+    row<&Wall::hole_height>(number_option("wall.hole.height", 0.2, 0, 10, "height of the hole, m")));
 constexpr const char* kBoxKeys[kMaxWallBoxes] = {"wall.box1", "wall.box2", "wall.box3", "wall.box4",
                                                  "wall.box5", "wall.box6", "wall.box7", "wall.box8"};
 
@@ -44,19 +43,9 @@ void add_wall_options(OptionTable& table) {
 }
 
 Wall wall_from(const Options& o) {
-  Wall w;
-  w.y = o.number("wall.y");
-  w.thickness = o.number("wall.thickness");
-  w.high_x = 0.5 * o.number("wall.width");
-  w.low_x = -w.high_x;
-  w.low_z = o.number("wall.low");
-  w.high_z = o.number("wall.high");
-  w.hole_x = o.number("wall.hole.x");
-  w.hole_z = o.number("wall.hole.z");
-  w.hole_width = o.number("wall.hole.width");
-  w.hole_height = o.number("wall.hole.height");
+  const Wall w = kRows.read(o);
   if (w.low_z >= w.high_z) fail(Code::kArgument, "wall.low: %g m is not below wall.high", w.low_z);
-  if (w.hole_x - 0.5 * w.hole_width < w.low_x || w.hole_x + 0.5 * w.hole_width > w.high_x)
+  if (w.hole_x - 0.5 * w.hole_width < w.low_x() || w.hole_x + 0.5 * w.hole_width > w.high_x())
     fail(Code::kArgument, "wall.hole.width: the hole reaches out of the wall");
   if (w.hole_z - 0.5 * w.hole_height < w.low_z || w.hole_z + 0.5 * w.hole_height > w.high_z)
     fail(Code::kArgument, "wall.hole.height: the hole reaches out of the wall");
@@ -66,10 +55,10 @@ Wall wall_from(const Options& o) {
 Vector<ShapeDef> wall_panels(const Wall& w, int32_t material) {
   const double left = w.hole_x - 0.5 * w.hole_width, right = w.hole_x + 0.5 * w.hole_width;
   const double bottom = w.hole_z - 0.5 * w.hole_height, top = w.hole_z + 0.5 * w.hole_height;
-  const double edges[][4] = {{w.low_x, w.high_x, top, w.high_z},
-                             {w.low_x, w.high_x, w.low_z, bottom},
-                             {w.low_x, left, bottom, top},
-                             {right, w.high_x, bottom, top}};
+  const double edges[][4] = {{w.low_x(), w.high_x(), top, w.high_z},
+                             {w.low_x(), w.high_x(), w.low_z, bottom},
+                             {w.low_x(), left, bottom, top},
+                             {right, w.high_x(), bottom, top}};
   Vector<ShapeDef> out;
   constexpr double kThinnest = 1e-4;  // m, of a panel worth having
   for (const auto& [x0, x1, z0, z1] : edges) {

@@ -8,12 +8,14 @@ namespace rdm {
 
 inline constexpr int kMaxWallBoxes = 8;
 
-// A plane wall: m, world axes.
+// A plane wall about x = 0, by its options: m, world axes.
 struct Wall {
-  double y, thickness;
-  double low_x, high_x, low_z, high_z;  // outer edges
-  double hole_x, hole_z;                // centre
+  double y, thickness, width;
+  double low_z, high_z;   // outer edges
+  double hole_x, hole_z;  // centre
   double hole_width, hole_height;
+  double low_x() const { return -high_x(); }
+  double high_x() const { return 0.5 * width; }
 };
 
 // Options wall.*, wall.hole.* and wall.box1 to wall.box8. A box given there replaces the wall with the hole.

@@ -7,7 +7,7 @@
 namespace rdm::test {
 namespace {
 
-constexpr Wall kWall = {-0.525, 0.03, -0.5, 0.5, 0.15, 1.15, 0, 0.65, 0.2, 0.2};
+constexpr Wall kWall = {-0.525, 0.03, 1, 0.15, 1.15, 0, 0.65, 0.2, 0.2};
 
 bool covered(const Vector<ShapeDef>& panels, double x, double z) {
   return std::any_of(panels.begin(), panels.end(), [&](const ShapeDef& s) {
@@ -25,7 +25,7 @@ TEST(Wall, PanelsAreTheWallWithoutTheHole) {
     EXPECT_EQ(panels.size(), w.hole_x > 0 ? 3u : 4u);
     for (double x = -0.595; x < 0.6; x += 0.01)
       for (double z = 0.055; z < 1.3; z += 0.01) {
-        const bool inside = x > w.low_x && x < w.high_x && z > w.low_z && z < w.high_z;
+        const bool inside = x > w.low_x() && x < w.high_x() && z > w.low_z && z < w.high_z;
         const bool hole =
             std::abs(x - w.hole_x) < 0.5 * w.hole_width && std::abs(z - w.hole_z) < 0.5 * w.hole_height;
         EXPECT_EQ(covered(panels, x, z), inside && !hole) << x << " " << z;
