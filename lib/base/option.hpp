@@ -62,6 +62,12 @@ constexpr OptionSpec open_option(OptionSpec row) {
   return row;
 }
 
+// The row, from which follows what other rows there are.
+constexpr OptionSpec choosing(OptionSpec row) {
+  row.chooses = true;
+  return row;
+}
+
 // The row, which lists begin with.
 constexpr OptionSpec basic(OptionSpec row) {
   row.level = OptionLevel::kBasic;

@@ -17,11 +17,6 @@ namespace {
 
 constexpr const char* kNone = "none";
 
-constexpr OptionSpec choosing(OptionSpec row) {
-  row.chooses = true;
-  return row;
-}
-
 // Texts are of the Options. Of all hands; of one of them, where empty is: as all; of all arms.
 struct ChoiceOptions {
   const char *hand, *arm;

@@ -73,9 +73,6 @@ HandScene make_hand_scene(const HandControlConfig& config, const Options& option
 void set_friction(SceneDef* scene, int32_t a, int32_t b, double mu);
 // By an option, whose range is drawn.
 void set_friction(HandScene* scene, int32_t a, int32_t b, const DrawnOption& mu);
-inline void set_friction(HandScene* scene, int32_t a, int32_t b, const Options& options, const char* key) {
-  set_friction(scene, a, b, drawn_option(options, key));
-}
 
 // One world's part: places in its task's state.
 struct HandControlState {

@@ -79,41 +79,65 @@ constexpr size_t kMapMemory = size_t{4} << 20;  // bytes; of voxels below 5 cm t
 constexpr double kMapReach = 100;               // m, about all that the scans see
 constexpr double kMapSlack = 1e-6;              // m, of the bounds about what is occupied
 
-constexpr OptionSpec kRows[] = {
-    legacy(text_option("cost_mode", "default", "default|paper|event|literal|displacement",
-                       "the broom touches the chair and it moves (default, paper, event), or (literal, "
-                       "displacement) the chair is away from its start")),
-    flag_option("count_hands", false, "cost_mode event: hands that move the chair count too"),
-    number_option("map_resolution", 0.05, 0.01, 0.5, "cost column occupancy: side of the map's voxels, m"),
-    basic(number_option("chair_limit", 0.1, 0, 10,
-                        "way of the chair in chair_moved and cost_mode displacement, m")),
-    basic(text_option("reward", "paper", "paper|full",
-                      "handles to palm points, or (full) the source's five terms")),
-    number_option("reward_bottom", 0, 0, 1000, "reward paper: loss for a metre from broom to trash"),
-    basic(number_option("palm_limit", 0.15, 0, 10,
-                        "the episode ends when a palm is farther from its handle point, m")),
-    basic(number_option("handle_height", 1.0, -10, 10,
-                        "the episode ends with the right handle point below, m")),
-    number_option("trash_height", -0.3, -10, 10, "the episode ends with the trash below, m"),
-    basic(number_option("success_distance", 0.25, 0, 10, "trash to goal distance that counts as success, m")),
-    flag_option("obs_broom_quat", false, "the broom's rotation at the end of the observation"),
-    number_option("goal.x", 0, -10, 10, "where the trash is to go, m"),
-    number_option("goal.y", -2.9, -10, 10, "where the trash is to go, m"),
-    number_option("goal.z", 0.03, -10, 10, "where the trash is to go, m"),
-    basic(number_option("trash_mass", 0.06, 0.001, 10, "mass of the trash, kg; a full bottle has 0.5")),
-    number_option("trash_rolling", 0.002, 0, 1, "torque that stops the trash's rolling on the floor, N m"),
-    basic(number_option("chair_mass", 4, 0.1, 100, "mass of the chair, kg")),
-    basic(flag_option("grip_assist", false, "soft ball joints hold the handle in both palms")),
-    number_option("grip_force", 50, 0, 1000, "bound of a grip_assist joint's force, N"),
-    drawable(
-        number_option("friction.head_floor", 0.2, 0, 10, "friction coefficient of broom head and floor")),
-    drawable(
-        number_option("friction.head_trash", 0.6, 0, 10, "friction coefficient of broom head and trash")),
-    drawable(number_option("friction.trash_floor", 0.3, 0, 10, "friction coefficient of trash and floor")),
-    drawable(number_option("friction.chair_floor", 0.3, 0, 10, "friction coefficient of chair and floor")),
-    drawable(
-        number_option("friction.other", 0.5, 0, 10, "friction coefficient of all other pairs of things")),
+struct CleanOptions {
+  bool displacement, count_hands;                                                   // of the cost
+  double map_resolution, chair_limit;                                               // m
+  bool full;                                                                        // reward
+  double reward_bottom, palm_limit, handle_height, trash_height, success_distance;  // 1/m, m
+  bool obs_broom_quat;
+  double goal_x, goal_y, goal_z;                 // m
+  double trash_mass, trash_rolling, chair_mass;  // kg, N m, kg
+  bool grip_assist;
+  double grip_force;                                                    // N
+  DrawnOption head_floor, head_trash, trash_floor, chair_floor, other;  // friction
 };
+constexpr auto kRows = option_rows<CleanOptions>(
+    row<&CleanOptions::displacement, false, false, false, true, true>(
+        legacy(text_option("cost_mode", "default", "default|paper|event|literal|displacement",
+                           "the broom touches the chair and it moves (default, paper, event), or (literal, "
+                           "displacement) the chair is away from its start"))),
+    row<&CleanOptions::count_hands>(
+        flag_option("count_hands", false, "cost_mode event: hands that move the chair count too")),
+    row<&CleanOptions::map_resolution>(number_option("map_resolution", 0.05, 0.01, 0.5,
+                                                     "cost column occupancy: side of the map's voxels, m")),
+    row<&CleanOptions::chair_limit>(basic(number_option(
+        "chair_limit", 0.1, 0, 10, "way of the chair in chair_moved and cost_mode displacement, m"))),
+    row<&CleanOptions::full, false, true>(basic(text_option(
+        "reward", "paper", "paper|full", "handles to palm points, or (full) the source's five terms"))),
+    row<&CleanOptions::reward_bottom>(
+        number_option("reward_bottom", 0, 0, 1000, "reward paper: loss for a metre from broom to trash")),
+    row<&CleanOptions::palm_limit>(basic(number_option(
+        "palm_limit", 0.15, 0, 10, "the episode ends when a palm is farther from its handle point, m"))),
+    row<&CleanOptions::handle_height>(basic(number_option(
+        "handle_height", 1.0, -10, 10, "the episode ends with the right handle point below, m"))),
+    row<&CleanOptions::trash_height>(
+        number_option("trash_height", -0.3, -10, 10, "the episode ends with the trash below, m")),
+    row<&CleanOptions::success_distance>(basic(
+        number_option("success_distance", 0.25, 0, 10, "trash to goal distance that counts as success, m"))),
+    row<&CleanOptions::obs_broom_quat>(
+        flag_option("obs_broom_quat", false, "the broom's rotation at the end of the observation")),
+    row<&CleanOptions::goal_x>(number_option("goal.x", 0, -10, 10, "where the trash is to go, m")),
+    row<&CleanOptions::goal_y>(number_option("goal.y", -2.9, -10, 10, "where the trash is to go, m")),
+    row<&CleanOptions::goal_z>(number_option("goal.z", 0.03, -10, 10, "where the trash is to go, m")),
+    row<&CleanOptions::trash_mass>(
+        basic(number_option("trash_mass", 0.06, 0.001, 10, "mass of the trash, kg; a full bottle has 0.5"))),
+    row<&CleanOptions::trash_rolling>(number_option(
+        "trash_rolling", 0.002, 0, 1, "torque that stops the trash's rolling on the floor, N m")),
+    row<&CleanOptions::chair_mass>(basic(number_option("chair_mass", 4, 0.1, 100, "mass of the chair, kg"))),
+    row<&CleanOptions::grip_assist>(
+        basic(flag_option("grip_assist", false, "soft ball joints hold the handle in both palms"))),
+    row<&CleanOptions::grip_force>(
+        number_option("grip_force", 50, 0, 1000, "bound of a grip_assist joint's force, N")),
+    row<&CleanOptions::head_floor>(drawable(
+        number_option("friction.head_floor", 0.2, 0, 10, "friction coefficient of broom head and floor"))),
+    row<&CleanOptions::head_trash>(drawable(
+        number_option("friction.head_trash", 0.6, 0, 10, "friction coefficient of broom head and trash"))),
+    row<&CleanOptions::trash_floor>(drawable(
+        number_option("friction.trash_floor", 0.3, 0, 10, "friction coefficient of trash and floor"))),
+    row<&CleanOptions::chair_floor>(drawable(
+        number_option("friction.chair_floor", 0.3, 0, 10, "friction coefficient of chair and floor"))),
+    row<&CleanOptions::other>(drawable(
+        number_option("friction.other", 0.5, 0, 10, "friction coefficient of all other pairs of things"))));
 
 void add_options(OptionTable& table) {
   table.add(kRows);
@@ -125,23 +149,24 @@ void add_options(OptionTable& table) {
 }
 
 HandScene make_scene_def(const Options& o) {
+  const CleanOptions options = kRows.read(o);
   HandScene s = make_hand_scene(make_config(), o, kMaterials);
   const int32_t things[] = {kHouse.handle, kHouse.head, kHouse.trash, kHouse.chair, kHouse.pan};
-  const double other = o.number("friction.other");
+  const double other = options.other.middle;
   for (const int32_t a : things) {
     for (const int32_t b : things) set_friction(&s, a, b, other);
     set_friction(&s, a, kGround, other);
     if (a == kHouse.handle) continue;
     for (const int32_t hand : {kRightHand, kLeftHand}) set_friction(&s, hand, a, other);
   }
-  set_friction(&s, kHouse.head, kGround, o, "friction.head_floor");
-  set_friction(&s, kHouse.head, kHouse.trash, o, "friction.head_trash");
-  set_friction(&s, kHouse.trash, kGround, o, "friction.trash_floor");
-  set_friction(&s, kHouse.chair, kGround, o, "friction.chair_floor");
+  set_friction(&s, kHouse.head, kGround, options.head_floor);
+  set_friction(&s, kHouse.head, kHouse.trash, options.head_trash);
+  set_friction(&s, kHouse.trash, kGround, options.trash_floor);
+  set_friction(&s, kHouse.chair, kGround, options.chair_floor);
   HouseDef house;
-  house.trash_mass = o.number("trash_mass");
-  house.chair_mass = o.number("chair_mass");
-  house.sink = o.number("contact_layer");
+  house.trash_mass = options.trash_mass;
+  house.chair_mass = options.chair_mass;
+  house.sink = s.solver.contact_layer;
   add_house(house, kHouse, &s);
   return s;
 }
@@ -154,24 +179,13 @@ class CleanHouse final : public PropTask {
  public:
   explicit CleanHouse(const Options& o)
       : PropTask(make_config(), o, make_scene_def(o), sizeof(State)),
-        displacement_(same_name(o.text("cost_mode"), "literal") ||
-                      same_name(o.text("cost_mode"), "displacement")),
-        count_hands_(o.flag("count_hands")),
-        full_(same_name(o.text("reward"), "full")),
-        quat_(o.flag("obs_broom_quat")),
-        chair_limit_(o.number("chair_limit")),
-        bottom_(o.number("reward_bottom")),
-        palm_limit_(o.number("palm_limit")),
-        handle_height_(o.number("handle_height")),
-        trash_height_(o.number("trash_height")),
-        success_(o.number("success_distance")),
-        rolling_(o.number("trash_rolling")),
-        grip_(o.flag("grip_assist") ? o.number("grip_force") : 0),
-        goal_{o.number("goal.x"), o.number("goal.y"), o.number("goal.z")} {
+        options_(kRows.read(o)),
+        grip_(options_.grip_assist ? options_.grip_force : 0),
+        goal_{options_.goal_x, options_.goal_y, options_.goal_z} {
     const auto body = [](int32_t i) {
       return [i](const SceneShape& x) { return x.carrier == Carrier::kBody && x.index == i; };
     };
-    map_house(o.number("map_resolution"));
+    map_house(options_.map_resolution);
     broom_chair_ = pairs_between(scene(), body(kBroom), body(kChair));
     hand_chair_ = pairs_between(scene(), of_hand, body(kChair));
     for (const FieldSpec& f : std::initializer_list<FieldSpec>{{"trash.position", "m", 3},
@@ -185,7 +199,7 @@ class CleanHouse final : public PropTask {
                                                                {"broom.left_hold", "m", 3},
                                                                {"broom.right_hold", "m", 3}})
       own_fields().push_back(f);
-    if (quat_) add_field(own_fields(), "broom", "rotation", "1", 4);
+    if (options_.obs_broom_quat) add_field(own_fields(), "broom", "rotation", "1", 4);
   }
 
   Vec3 focus(const World& world, const void*) const override { return broom_point(world, kBroomBottom); }
@@ -206,18 +220,19 @@ class CleanHouse final : public PropTask {
     for (int32_t hand = 0; hand < 2; ++hand) {
       const Vec3 hold = hold_point(world, hand);
       palms[hand] = norm(palm(world, hand) - hold);
-      for (int32_t f = 0; full_ && f < hands().hand(hand).num_tips; ++f)
+      for (int32_t f = 0; options_.full && f < hands().hand(hand).num_tips; ++f)
         tips += norm(tip(world, hand, f, kTipBeyond) - hold);
-      v.terminated = v.terminated || palms[hand] >= palm_limit_;
+      v.terminated = v.terminated || palms[hand] >= options_.palm_limit;
     }
-    v.terminated = v.terminated || trash.z <= trash_height_ || hold_point(world, 0).z <= handle_height_;
+    v.terminated =
+        v.terminated || trash.z <= options_.trash_height || hold_point(world, 0).z <= options_.handle_height;
     const double to_trash = norm(broom_point(world, kBroomBottom) - trash);
     v.reward = 50 - 5 * (palms[0] + palms[1]);
-    if (full_)
+    if (options_.full)
       v.reward -= tips + (to_trash > kNear ? 40 : 20 * to_goal) + 10 * to_trash;
     else
-      v.reward -= 10 * to_goal + bottom_ * to_trash;
-    v.success = to_goal <= success_;
+      v.reward -= 10 * to_goal + options_.reward_bottom * to_trash;
+    v.success = to_goal <= options_.success_distance;
     judge_costs(world, s, &v);
     return v;
   }
@@ -251,7 +266,7 @@ class CleanHouse final : public PropTask {
     put(hold_point(world, 1), out + 27);
     put(hold_point(world, 0), out + 30);
     out += 33;
-    if (!quat_) return out;
+    if (!options_.obs_broom_quat) return out;
     put(world.body(kBroom).X.q, out);
     return out + 4;
   }
@@ -270,10 +285,10 @@ class CleanHouse final : public PropTask {
     const Motion& m = world.body(kTrash);
     const double spin = norm(m.w);
     if (scene().def.solver.sleep_time > 0 && spin < kStill) return;
-    if (rolling_ == 0 || spin == 0 || trash_height(m.X) > kOnFloor) return;
+    if (options_.trash_rolling == 0 || spin == 0 || trash_height(m.X) > kOnFloor) return;
     const double mass = scene().def.bodies[kTrash].inertia.mass;
     const double stops = 1.5 * mass * kTrashRadius * kTrashRadius * spin / scene().control_dt();
-    world.push_body(kTrash, {}, (-std::min(rolling_, stops) / spin) * m.w);
+    world.push_body(kTrash, {}, (-std::min(options_.trash_rolling, stops) / spin) * m.w);
   }
 
   void hold_handle(World& world, int32_t hand) const {
@@ -343,17 +358,17 @@ class CleanHouse final : public PropTask {
     v->cost_raw[kBroomChair] = by_broom;
     v->cost[kHandChair] = by_hand > 0;
     v->cost_raw[kHandChair] = by_hand;
-    v->cost[kChairMoved] = way > chair_limit_;
+    v->cost[kChairMoved] = way > options_.chair_limit;
     v->cost_raw[kChairMoved] = way;
     v->cost_raw[kOccupancy] = parts_in_map(world);
     v->cost[kOccupancy] = v->cost_raw[kOccupancy] > 0;
-    v->cost[kCost] =
-        displacement_ ? v->cost[kChairMoved] : moves && by_broom + (count_hands_ ? by_hand : 0) > 0;
+    v->cost[kCost] = options_.displacement ? v->cost[kChairMoved]
+                                           : moves && by_broom + (options_.count_hands ? by_hand : 0) > 0;
     v->cost_raw[kCost] = way;
   }
 
-  bool displacement_, count_hands_, full_, quat_;
-  double chair_limit_, bottom_, palm_limit_, handle_height_, trash_height_, success_, rolling_, grip_;
+  CleanOptions options_;
+  double grip_;  // N, 0: none
   Vec3 goal_;
   Vector<int32_t> broom_chair_, hand_chair_;
   struct DestroyMap {

@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "env/options/simulation.hpp"
 #include "tasks/catalog.hpp"
 #include "tasks/hand/hand_learner.hpp"
 #include "tasks/props/jenga_tower.hpp"
@@ -51,8 +52,17 @@ HandControlConfig make_config(bool right_copy, bool paper_pair) {
   p.friction = 1.5;
   return p;
 }
+
+struct PairOptions {
+  bool paper;
+};
+constexpr auto kPairRows = row<&PairOptions::paper, false, true>(choosing(text_option(
+    "pair", "own", "own|paper",
+    "whose words of hand and arm are empty: the common ones (own), or Shadow on iiwa 7, which pushes, and "
+    "Allegro on xArm 6 (paper)")));
+
 HandControlConfig config_from(const Options& o) {
-  return make_config(same_name(o.text("left_model"), "right_copy"), same_name(o.text("pair"), "paper"));
+  return make_config(left_is_copied(o), kPairRows.read(o).paper);
 }
 
 enum : int { kCost, kMoved, kContact, kFall, kNumCosts };
@@ -64,58 +74,72 @@ constexpr CostSpec kCosts[kNumCosts] = {
     {"tower_fall", "a block is half its height or more below its start; raw: the deepest fall, m", -1},
 };
 
-constexpr OptionSpec kRows[] = {
-    legacy(text_option(
+enum class Mode { kAny, kAll, kSum, kContact };  // of the cost
+struct JengaOptions {
+  Mode cost_mode;
+  double cost_sum, cost_all;                                 // m
+  int32_t reward_finger;                                     // 0 right, 1 left hand
+  double reward_push, push_limit, success_push, drop_limit;  // 1/m, m
+  bool extended_obs;
+  DrawnOption block_table, hand_block, hand_table;  // friction
+};
+constexpr auto kRows = option_rows<JengaOptions>(
+    row<&JengaOptions::cost_mode, Mode::kAny, Mode::kAny, Mode::kAll, Mode::kAll, Mode::kSum, Mode::kSum,
+        Mode::kContact>(legacy(text_option(
         "cost_mode", "default", "default|any|paper|all|literal|sum|contact",
         "any block moved (default, any), all moved by 0.1 mm (paper, all), ways of all 0.25 m in sum "
-        "(literal, sum), or a hand touches one (contact)")),
-    legacy(number_option("cost_sum", 0.25, 0, 100, "cost_mode literal: sum of all ways, m")),
-    legacy(number_option("cost_all", 1e-4, 0, 1, "cost_mode paper: way of every block, m")),
-    basic(text_option(
+        "(literal, sum), or a hand touches one (contact)"))),
+    row<&JengaOptions::cost_sum>(
+        legacy(number_option("cost_sum", 0.25, 0, 100, "cost_mode literal: sum of all ways, m"))),
+    row<&JengaOptions::cost_all>(
+        legacy(number_option("cost_all", 1e-4, 0, 1, "cost_mode paper: way of every block, m"))),
+    row<&JengaOptions::reward_finger, 0, 1>(basic(text_option(
         "reward_finger", "right", "right|left",
-        "whose middle finger the reward draws to the target: right, which can push, or (the paper's) left")),
-    basic(number_option("reward_push", 30, 0, 1000, "reward for a metre of the target's way along +y")),
-    basic(number_option("push_limit", 0.3, 0, 10, "way of the target beyond which it pays no more, m")),
-    basic(number_option("success_push", 0, 0, 10,
-                        "way of the target that counts as success, m; 0: its length")),
-    number_option("drop_limit", 0.01, 0, 10, "the episode ends when all blocks are moved in z by more, m"),
-    flag_option("extended_obs", false, "positions of all blocks at the end of the observation"),
-    drawable(number_option("friction.block_table", 0.5, 0, 10, "friction coefficient of blocks and table")),
-    drawable(number_option("friction.hand_block", 0.5, 0, 10, "friction coefficient of hands and blocks")),
-    drawable(number_option("friction.hand_table", 0.5, 0, 10, "friction coefficient of hands and table")),
-};
+        "whose middle finger the reward draws to the target: right, which can push, or (the paper's) left"))),
+    row<&JengaOptions::reward_push>(
+        basic(number_option("reward_push", 30, 0, 1000, "reward for a metre of the target's way along +y"))),
+    row<&JengaOptions::push_limit>(
+        basic(number_option("push_limit", 0.3, 0, 10, "way of the target beyond which it pays no more, m"))),
+    row<&JengaOptions::success_push>(basic(number_option(
+        "success_push", 0, 0, 10, "way of the target that counts as success, m; 0: its length"))),
+    row<&JengaOptions::drop_limit>(number_option(
+        "drop_limit", 0.01, 0, 10, "the episode ends when all blocks are moved in z by more, m")),
+    row<&JengaOptions::extended_obs>(
+        flag_option("extended_obs", false, "positions of all blocks at the end of the observation")),
+    row<&JengaOptions::block_table>(drawable(
+        number_option("friction.block_table", 0.5, 0, 10, "friction coefficient of blocks and table"))),
+    row<&JengaOptions::hand_block>(drawable(
+        number_option("friction.hand_block", 0.5, 0, 10, "friction coefficient of hands and blocks"))),
+    row<&JengaOptions::hand_table>(drawable(
+        number_option("friction.hand_table", 0.5, 0, 10, "friction coefficient of hands and table"))));
 
 void add_options(OptionTable& table) {
   table.add(kRows);
   add_tower_options(table);
-  OptionSpec pair = text_option(
-      "pair", "own", "own|paper",
-      "whose words of hand and arm are empty: the common ones (own), or Shadow on iiwa 7, which pushes, and "
-      "Allegro on xArm 6 (paper)");
-  pair.chooses = true;
-  table.add(pair);
-  add_prop_options(make_config(false, same_name(table.choice("pair"), "paper")), 250, 256, table);
+  table.add(kPairRows);
+  add_prop_options(
+      make_config(false, same_name(table.choice(kPairRows.of<&PairOptions::paper>().key), "paper")), 250, 256,
+      table);
   table.set_default("sleep_time", 0.25);
   table.set_default("reset_noise", 0.001);
   table.set_default("exact_solver", 0.0);  // of a tower's contacts ODE's takes 35 ms a step
 }
 
 HandScene make_scene_def(const JengaTower& tower, const Options& o) {
+  const JengaOptions options = kRows.read(o);
   HandScene s = make_hand_scene(config_from(o), o, kMaterials);
   add_tower(tower, kTarget, kBlock, kTable, &s);
   for (const int32_t a : {kTarget, kBlock}) {
     for (const int32_t b : {kTarget, kBlock}) set_friction(&s, a, b, tower.friction);
-    set_friction(&s, a, kTable, o, "friction.block_table");
-    set_friction(&s, a, kGround, o, "friction.block_table");
+    set_friction(&s, a, kTable, options.block_table);
+    set_friction(&s, a, kGround, options.block_table);
   }
   for (const int32_t hand : {kRightHand, kLeftHand}) {
-    set_friction(&s, hand, kBlock, o, "friction.hand_block");
-    set_friction(&s, hand, kTable, o, "friction.hand_table");
+    set_friction(&s, hand, kBlock, options.hand_block);
+    set_friction(&s, hand, kTable, options.hand_table);
   }
   return s;
 }
-
-enum class Mode { kAny, kAll, kSum, kContact };
 
 struct State {
   Vec3 start[1 + kJengaBlocks];
@@ -123,7 +147,7 @@ struct State {
 
 class Jenga final : public PropTask {
  public:
-  explicit Jenga(const Options& o) : Jenga(o, jenga_tower_from(o)) {}
+  explicit Jenga(const Options& o) : Jenga(o, jenga_tower_from(o, solver_from(o).contact_layer)) {}
 
   Verdict judge(World& world, void* state, int32_t) const override {
     const State& s = *static_cast<const State*>(state);
@@ -131,8 +155,9 @@ class Jenga final : public PropTask {
     const Pose& target = world.body(0).X;
     const double pushed = target.p.y - s.start[0].y;
     const Vec3 end = target * Vec3{0, -tower_.target_end(), 0};
-    v.reward = push_ * std::min(pushed, push_limit_) - norm(tip(world, finger_, kMiddle, kTipBeyond) - end);
-    v.success = pushed >= success_;
+    v.reward = options_.reward_push * std::min(pushed, options_.push_limit) -
+               norm(tip(world, options_.reward_finger, kMiddle, kTipBeyond) - end);
+    v.success = pushed >= options_.success_push;
     v.terminated = judge_costs(world, s, &v);
     return v;
   }
@@ -153,7 +178,7 @@ class Jenga final : public PropTask {
     put(m.v, out + 7);
     put(m.w, out + 10, 0.2);
     out += 13;
-    for (int i = 1; extended_ && i <= tower_.blocks; ++i, out += 3) put(world.body(i).X.p, out);
+    for (int i = 1; options_.extended_obs && i <= tower_.blocks; ++i, out += 3) put(world.body(i).X.p, out);
     return out;
   }
 
@@ -161,23 +186,11 @@ class Jenga final : public PropTask {
   Jenga(const Options& o, const JengaTower& tower)
       : PropTask(config_from(o), o, make_scene_def(tower, o), sizeof(State)),
         tower_(tower),
-        finger_(same_name(o.text("reward_finger"), "left")),
-        push_(o.number("reward_push")),
-        push_limit_(o.number("push_limit")),
-        success_(o.number("success_push")),
-        cost_sum_(o.number("cost_sum")),
-        cost_all_(o.number("cost_all")),
-        drop_(o.number("drop_limit")),
-        extended_(o.flag("extended_obs")) {
-    if (hands().hand(finger_).num_tips <= kMiddle)
-      fail(Code::kUnsupported, "jenga: robot %s has no second finger", hands().hand(finger_).robot->name);
-    if (success_ == 0) success_ = 2 * tower.target_end();
-    const char* mode = o.text("cost_mode");
-    const auto is = [&](const char* a, const char* b) { return same_name(mode, a) || same_name(mode, b); };
-    mode_ = is("paper", "all")     ? Mode::kAll
-            : is("literal", "sum") ? Mode::kSum
-            : is("contact", "")    ? Mode::kContact
-                                   : Mode::kAny;
+        options_(kRows.read(o)) {
+    if (hands().hand(options_.reward_finger).num_tips <= kMiddle)
+      fail(Code::kUnsupported, "jenga: robot %s has no second finger",
+           hands().hand(options_.reward_finger).robot->name);
+    if (options_.success_push == 0) options_.success_push = 2 * tower.target_end();
     hand_block_ = pairs_between(
         scene(), of_hand, [](const SceneShape& b) { return b.carrier == Carrier::kBody && b.index > 0; });
     FieldTable& table = own_fields();
@@ -185,7 +198,8 @@ class Jenga final : public PropTask {
     add_field(table, "target", "rotation", "1", 4);
     add_field(table, "target", "velocity", "m/s", 3);
     add_field(table, "target", "spin", "5 rad/s", 3);
-    if (extended_ && tower.blocks > 0) add_field(table, "blocks", "position", "m", 3 * tower.blocks);
+    if (options_.extended_obs && tower.blocks > 0)
+      add_field(table, "blocks", "position", "m", 3 * tower.blocks);
   }
 
   // True when the whole tower has come down.
@@ -199,7 +213,7 @@ class Jenga final : public PropTask {
       shortest = std::min(shortest, length);
       sum += length;
       deepest = std::max(deepest, -way.z);
-      all_dropped = all_dropped && std::fabs(way.z) > drop_;
+      all_dropped = all_dropped && std::fabs(way.z) > options_.drop_limit;
     }
     const int touched = touching(world, hand_block_);
     v->cost[kMoved] = longest > tower_.moved;
@@ -208,17 +222,17 @@ class Jenga final : public PropTask {
     v->cost_raw[kContact] = touched;
     v->cost[kFall] = deepest >= tower_.half[1].z;
     v->cost_raw[kFall] = deepest;
-    switch (mode_) {
+    switch (options_.cost_mode) {
       case Mode::kAny:
         v->cost[kCost] = v->cost[kMoved];
         v->cost_raw[kCost] = longest;
         break;
       case Mode::kAll:
-        v->cost[kCost] = shortest > cost_all_;
+        v->cost[kCost] = shortest > options_.cost_all;
         v->cost_raw[kCost] = shortest;
         break;
       case Mode::kSum:
-        v->cost[kCost] = sum > cost_sum_;
+        v->cost[kCost] = sum > options_.cost_sum;
         v->cost_raw[kCost] = sum;
         break;
       case Mode::kContact:
@@ -230,10 +244,7 @@ class Jenga final : public PropTask {
   }
 
   JengaTower tower_;
-  Mode mode_ = Mode::kAny;
-  int32_t finger_;
-  double push_, push_limit_, success_, cost_sum_, cost_all_, drop_;
-  bool extended_;
+  JengaOptions options_;
   Vector<int32_t> hand_block_;
 };
 

@@ -11,18 +11,24 @@ namespace {
 constexpr double kTableTop = 0.2357, kTableY = -0.6;  // m
 constexpr Vec3 kTableHalf = {0.15, 0.189, 0.01};
 
-constexpr OptionSpec kRows[] = {
-    basic(text_option(
-        "preset", "redman", "redman|real",
-        "blocks of 0.26 x 0.04 x 0.04 m in pairs, or (real) of 0.075 x 0.025 x 0.015 m in threes")),
-    basic(text_option("tower", "on", "on|off", "off: no blocks, the target alone lies on the table")),
-    basic(
-        number_option("block_mass", 0, 0, 10, "mass of a block, kg; 0: the preset's; the target's follows")),
-    number_option("friction.block_block", -1, -1, 10,
-                  "friction coefficient of two blocks; -1: the preset's, 0.05 or (real) 0.4"),
-    number_option("block_limit", 0, 0, 1,
-                  "way from which a block counts as moved, m; 0: the preset's, 0.01 or (real) 0.005"),
+struct TowerOptions {
+  bool real, off;                            // preset, tower
+  double block_mass, friction, block_limit;  // kg, 1, m
 };
+constexpr auto kRows = option_rows<TowerOptions>(
+    row<&TowerOptions::real, false, true>(basic(text_option(
+        "preset", "redman", "redman|real",
+        "blocks of 0.26 x 0.04 x 0.04 m in pairs, or (real) of 0.075 x 0.025 x 0.015 m in threes"))),
+    row<&TowerOptions::off, false, true>(
+        basic(text_option("tower", "on", "on|off", "off: no blocks, the target alone lies on the table"))),
+    row<&TowerOptions::block_mass>(basic(
+        number_option("block_mass", 0, 0, 10, "mass of a block, kg; 0: the preset's; the target's follows"))),
+    row<&TowerOptions::friction>(
+        number_option("friction.block_block", -1, -1, 10,
+                      "friction coefficient of two blocks; -1: the preset's, 0.05 or (real) 0.4")),
+    row<&TowerOptions::block_limit>(
+        number_option("block_limit", 0, 0, 1,
+                      "way from which a block counts as moved, m; 0: the preset's, 0.01 or (real) 0.005")));
 
 // A block of row `row`, whose rows are `height` apart and sink by `sink` each: what a contact may be deep.
 double row_height(int row, double height, double sink) {
@@ -73,22 +79,22 @@ void add_tower_options(OptionTable& table) {
   table.add(kRows);
 }
 
-JengaTower jenga_tower_from(const Options& o) {
+JengaTower jenga_tower_from(const Options& options, double contact_layer) {
+  const TowerOptions o = kRows.read(options);
   JengaTower t;
   t.table = {0, kTableY, kTableTop - kTableHalf.z};
   t.table_half = kTableHalf;
-  const double sink = o.number("contact_layer");
-  (same_name(o.text("preset"), "real") ? build_real : build_redman)(sink, &t);
-  if (same_name(o.text("tower"), "off")) {
+  (o.real ? build_real : build_redman)(contact_layer, &t);
+  if (o.off) {
     t.blocks = 0;
-    t.place[0].z = row_height(0, 2 * t.half[0].z, sink);
+    t.place[0].z = row_height(0, 2 * t.half[0].z, contact_layer);
   }
-  if (const double mass = o.number("block_mass"); mass > 0) {
-    const double scale = mass / t.mass[1];
+  if (o.block_mass > 0) {
+    const double scale = o.block_mass / t.mass[1];
     for (double& m : t.mass) m *= scale;
   }
-  if (const double friction = o.number("friction.block_block"); friction >= 0) t.friction = friction;
-  if (const double moved = o.number("block_limit"); moved > 0) t.moved = moved;
+  if (o.friction >= 0) t.friction = o.friction;
+  if (o.block_limit > 0) t.moved = o.block_limit;
   return t;
 }
 

@@ -21,7 +21,8 @@ struct JengaTower {
 };
 
 void add_tower_options(OptionTable& table);
-JengaTower jenga_tower_from(const Options& options);
+// Blocks sink by the depth at which things rest, m.
+JengaTower jenga_tower_from(const Options& options, double contact_layer);
 
 // Bodies and table; the target has material `target`, the blocks `block`.
 void add_tower(const JengaTower& tower, int32_t target, int32_t block, int32_t table, SceneDef* scene);

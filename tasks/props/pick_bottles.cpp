@@ -37,7 +37,7 @@ HandControlConfig make_config(bool right_copy) {
   return p;
 }
 HandControlConfig config_from(const Options& o) {
-  return make_config(same_name(o.text("left_model"), "right_copy"));
+  return make_config(left_is_copied(o));
 }
 
 enum : int { kCost, kHandBottle, kBottleBottle, kTippedOver, kNumCosts };
@@ -49,31 +49,44 @@ constexpr CostSpec kCosts[kNumCosts] = {
     {"tipped", "a bottle leans by more than 0.5 rad; raw: the largest angle, rad", -1},
 };
 
-constexpr OptionSpec kRows[] = {
-    legacy(text_option(
+struct BottleOptions {
+  bool lane, fingers;                                                           // cost_mode, reward
+  double reward_height, success_height, fall_height, finger_limit, palm_limit;  // 1/m, m
+  double bottle_mass;                                                           // kg
+  bool fixed_neighbours;
+  DrawnOption hand_other, bottle_table, bottle_bottle, hand_table;  // friction
+};
+constexpr auto kRows = option_rows<BottleOptions>(
+    row<&BottleOptions::lane, false, false, false, true, true>(legacy(text_option(
         "cost_mode", "default", "default|paper|contact|literal|lane",
         "contact with another bottle (default, paper, contact), or (literal, lane) a picked bottle "
-        "leaves its lane by 0.03 m")),
-    basic(text_option("reward", "palm", "palm|fingers",
-                      "hands to caps: palm points, or (fingers) the sums over five fingertips")),
-    basic(number_option("reward_height", 20, 0, 1000,
-                        "reward for a metre of the lower picked bottle's height")),
-    basic(number_option("success_height", 0.05, 0, 10,
-                        "height of both picked bottles that counts as success, m")),
-    number_option("fall_height", 0.45, -10, 10, "the episode ends with a bottle's origin below, m"),
-    basic(number_option(
+        "leaves its lane by 0.03 m"))),
+    row<&BottleOptions::fingers, false, true>(
+        basic(text_option("reward", "palm", "palm|fingers",
+                          "hands to caps: palm points, or (fingers) the sums over five fingertips"))),
+    row<&BottleOptions::reward_height>(basic(number_option(
+        "reward_height", 20, 0, 1000, "reward for a metre of the lower picked bottle's height"))),
+    row<&BottleOptions::success_height>(basic(number_option(
+        "success_height", 0.05, 0, 10, "height of both picked bottles that counts as success, m"))),
+    row<&BottleOptions::fall_height>(
+        number_option("fall_height", 0.45, -10, 10, "the episode ends with a bottle's origin below, m")),
+    row<&BottleOptions::finger_limit>(basic(number_option(
         "finger_limit", 1.5, 0, 100,
-        "the episode ends when the five fingertips of a hand are farther from the cap, sum in m")),
-    basic(
-        number_option("palm_limit", 0.25, 0, 10, "the episode ends when a palm is farther from its cap, m")),
-    basic(number_option("bottle_mass", 0.06, 0.001, 10, "mass of a bottle, kg; a full one has 0.5")),
-    flag_option("fixed_neighbours", false, "the bottles that stay cannot be moved"),
-    drawable(number_option("friction.hand_other", 0.1, 0, 10,
-                           "friction coefficient of hands and bottles that stay")),
-    drawable(number_option("friction.bottle_table", 0.5, 0, 10, "friction coefficient of bottles and table")),
-    drawable(number_option("friction.bottle_bottle", 0.1, 0, 10, "friction coefficient of two bottles")),
-    drawable(number_option("friction.hand_table", 0.5, 0, 10, "friction coefficient of hands and table")),
-};
+        "the episode ends when the five fingertips of a hand are farther from the cap, sum in m"))),
+    row<&BottleOptions::palm_limit>(basic(
+        number_option("palm_limit", 0.25, 0, 10, "the episode ends when a palm is farther from its cap, m"))),
+    row<&BottleOptions::bottle_mass>(
+        basic(number_option("bottle_mass", 0.06, 0.001, 10, "mass of a bottle, kg; a full one has 0.5"))),
+    row<&BottleOptions::fixed_neighbours>(
+        flag_option("fixed_neighbours", false, "the bottles that stay cannot be moved")),
+    row<&BottleOptions::hand_other>(drawable(number_option(
+        "friction.hand_other", 0.1, 0, 10, "friction coefficient of hands and bottles that stay"))),
+    row<&BottleOptions::bottle_table>(drawable(
+        number_option("friction.bottle_table", 0.5, 0, 10, "friction coefficient of bottles and table"))),
+    row<&BottleOptions::bottle_bottle>(
+        drawable(number_option("friction.bottle_bottle", 0.1, 0, 10, "friction coefficient of two bottles"))),
+    row<&BottleOptions::hand_table>(drawable(
+        number_option("friction.hand_table", 0.5, 0, 10, "friction coefficient of hands and table"))));
 
 void add_options(OptionTable& table) {
   table.add(kRows);
@@ -83,17 +96,18 @@ void add_options(OptionTable& table) {
 }
 
 HandScene make_scene_def(const Options& o) {
+  const BottleOptions options = kRows.read(o);
   HandScene s = make_hand_scene(config_from(o), o, kMaterials);
-  add_bottles(o.number("bottle_mass"), o.number("contact_layer"), o.flag("fixed_neighbours"), kPicked, kOther,
-              kTable, &s);
+  add_bottles(options.bottle_mass, s.solver.contact_layer, options.fixed_neighbours, kPicked, kOther, kTable,
+              &s);
   for (const int32_t a : {kPicked, kOther}) {
-    for (const int32_t b : {kPicked, kOther}) set_friction(&s, a, b, o, "friction.bottle_bottle");
-    set_friction(&s, a, kTable, o, "friction.bottle_table");
-    set_friction(&s, a, kGround, o, "friction.bottle_table");
+    for (const int32_t b : {kPicked, kOther}) set_friction(&s, a, b, options.bottle_bottle);
+    set_friction(&s, a, kTable, options.bottle_table);
+    set_friction(&s, a, kGround, options.bottle_table);
   }
   for (const int32_t hand : {kRightHand, kLeftHand}) {
-    set_friction(&s, hand, kOther, o, "friction.hand_other");
-    set_friction(&s, hand, kTable, o, "friction.hand_table");
+    set_friction(&s, hand, kOther, options.hand_other);
+    set_friction(&s, hand, kTable, options.hand_table);
   }
   return s;
 }
@@ -105,14 +119,7 @@ struct State {
 class PickBottles final : public PropTask {
  public:
   explicit PickBottles(const Options& o)
-      : PropTask(config_from(o), o, make_scene_def(o), sizeof(State)),
-        fingers_(same_name(o.text("reward"), "fingers")),
-        lane_(same_name(o.text("cost_mode"), "literal") || same_name(o.text("cost_mode"), "lane")),
-        height_(o.number("reward_height")),
-        success_(o.number("success_height")),
-        fall_height_(o.number("fall_height")),
-        finger_limit_(o.number("finger_limit")),
-        palm_limit_(o.number("palm_limit")) {
+      : PropTask(config_from(o), o, make_scene_def(o), sizeof(State)), options_(kRows.read(o)) {
     const auto picked = [](const SceneShape& x) { return x.carrier == Carrier::kBody && x.index < 2; };
     const auto other = [&](const SceneShape& x) {
       return std::strncmp(x.def.name.text, "bottle_", 7) == 0 && !picked(x);
@@ -138,16 +145,16 @@ class PickBottles final : public PropTask {
       palms[hand] = norm(palm(world, hand) - cap);
       for (int32_t f = 0; f < hands().hand(hand).num_tips; ++f)
         tips[hand] += norm(tip(world, hand, f, kTipBeyond) - cap);
-      v.terminated = v.terminated || palms[hand] > palm_limit_ || tips[hand] >= finger_limit_;
+      v.terminated = v.terminated || palms[hand] > options_.palm_limit || tips[hand] >= options_.finger_limit;
     }
     for (int32_t i = 0; i < scene().num_bodies; ++i)
-      v.terminated = v.terminated || world.body(i).X.p.z <= fall_height_;
+      v.terminated = v.terminated || world.body(i).X.p.z <= options_.fall_height;
     const double low = std::min(world.body(0).X.p.z, world.body(1).X.p.z);
-    if (fingers_)
-      v.reward = height_ * (low - kFingersRest) - tips[0] - tips[1] - (v.terminated ? 1 : 0);
+    if (options_.fingers)
+      v.reward = options_.reward_height * (low - kFingersRest) - tips[0] - tips[1] - (v.terminated ? 1 : 0);
     else
-      v.reward = height_ * (low - s.rest) - palms[0] - palms[1];
-    v.success = low - s.rest >= success_;
+      v.reward = options_.reward_height * (low - s.rest) - palms[0] - palms[1];
+    v.success = low - s.rest >= options_.success_height;
     judge_costs(world, s, &v);
     return v;
   }
@@ -200,7 +207,7 @@ class PickBottles final : public PropTask {
     v->cost_raw[kTippedOver] = lean;
     v->cost[kCost] = by_hand + by_bottle > 0;
     v->cost_raw[kCost] = by_hand + by_bottle;
-    if (!lane_) return;
+    if (!options_.lane) return;
     double off = 0;
     for (int32_t i = 0; i < 2; ++i)
       for (const double along : {-kBottleCap, 0.0, kBottleCap})
@@ -209,8 +216,7 @@ class PickBottles final : public PropTask {
     v->cost_raw[kCost] = off;
   }
 
-  bool fingers_, lane_;
-  double height_, success_, fall_height_, finger_limit_, palm_limit_;
+  BottleOptions options_;
   Vector<int32_t> hand_other_, picked_other_;
 };
 

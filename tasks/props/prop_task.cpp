@@ -5,26 +5,26 @@
 namespace rdm {
 namespace {
 
-constexpr OptionSpec kRows[] = {
-    number_option("reset_noise", 0, 0, 0.5,
-                  "half width of the draw by which things start elsewhere, m; 0, with joint_noise 0 too: one "
-                  "start for all episodes"),
-    number_option("joint_noise", 0, 0, 1, "share of each joint's range that is drawn at a reset"),
-};
+constexpr auto kRows = option_rows<PropOptions>(
+    row<&PropOptions::max_steps>(
+        basic(integer_option("max_steps", 1, 1, 100000, "control steps of an episode"))),
+    row<&PropOptions::reset_noise>(number_option(
+        "reset_noise", 0, 0, 0.5,
+        "half width of the draw by which things start elsewhere, m; 0, with joint_noise 0 too: one "
+        "start for all episodes")),
+    row<&PropOptions::joint_noise>(
+        number_option("joint_noise", 0, 0, 1, "share of each joint's range that is drawn at a reset")));
 
 }  // namespace
 
 void add_prop_options(const HandControlConfig& config, int32_t max_steps, int32_t contacts_max,
                       OptionTable& table) {
-  table.add(basic(integer_option("max_steps", max_steps, 1, 100000, "control steps of an episode")));
-  table.add(kRows);
+  table.add(kRows.with<&PropOptions::max_steps>(max_steps));
   add_hand_control_options(config, table, contacts_max);
 }
 
 PropTask::PropTask(const HandControlConfig& config, const Options& o, HandScene scene, size_t own_bytes)
-    : HandTask(config, o, o.integer("max_steps"), std::move(scene), own_bytes),
-      reset_noise_(o.number("reset_noise")),
-      joint_noise_(o.number("joint_noise")) {
+    : HandTask(config, o, kRows.read(o).max_steps, std::move(scene), own_bytes), options_(kRows.read(o)) {
   hands().add_fields(own_fields());
   for (int32_t i = 0; i < kMaxHands; ++i) {
     const Hand& hand = hands().hand(i);
@@ -40,13 +40,14 @@ PropTask::PropTask(const HandControlConfig& config, const Options& o, HandScene 
 }
 
 void PropTask::reset(World& world, void* state, Stream& stream) const {
-  hands().reset(joint_noise_, false, world, control_state(state), stream);
-  if (reset_noise_ > 0) draw_places(world, stream);
+  hands().reset(options_.joint_noise, false, world, control_state(state), stream);
+  if (options_.reset_noise > 0) draw_places(world, stream);
   start(world, state);
 }
 
 void PropTask::draw_places(World& world, Stream& stream) const {
-  const double dx = reset_noise_ * stream.signed_unit(), dy = reset_noise_ * stream.signed_unit();
+  const double dx = options_.reset_noise * stream.signed_unit(),
+               dy = options_.reset_noise * stream.signed_unit();
   for (int32_t i = 0; i < scene().num_bodies; ++i) {
     Motion m = world.body(i);
     m.X.p += {dx, dy, 0};

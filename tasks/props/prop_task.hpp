@@ -12,6 +12,11 @@ namespace rdm {
 void add_prop_options(const HandControlConfig& config, int32_t max_steps, int32_t contacts_max,
                       OptionTable& table);
 
+struct PropOptions {
+  int32_t max_steps;
+  double reset_noise, joint_noise;  // m, share of a joint's range
+};
+
 class PropTask : public HandTask {
  public:
   // Bodies stand where the scene has them, moved by reset_noise; then start() follows.
@@ -27,7 +32,7 @@ class PropTask : public HandTask {
   virtual void start(World& world, void* state) const = 0;
   virtual float* write_props(const World& world, const void* state, float* out) const = 0;
 
-  double reset_noise() const { return reset_noise_; }
+  double reset_noise() const { return options_.reset_noise; }
   // Origin of the distal link's frame moved by `beyond` m towards the finger's end.
   Vec3 tip(const World& world, int32_t hand, int32_t finger, double beyond) const;
   // The point before the palm where a held thing is: Robot::p_hold.
@@ -37,7 +42,7 @@ class PropTask : public HandTask {
   static bool of_hand(const SceneShape& shape) { return shape.articulation >= 0; }
 
  private:
-  double reset_noise_, joint_noise_;
+  PropOptions options_;
   int32_t palms_[kMaxHands];
   Vec3 palm_points_[kMaxHands];
   Vec3 tip_axes_[kMaxHands][kMaxHandTips];  // unit, from a distal link's origin to its end, in the link

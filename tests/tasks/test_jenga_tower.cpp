@@ -10,12 +10,11 @@ JengaTower tower(std::vector<OptionInput> inputs = {}) {
   if (!table) {
     table = new OwnOptionTable;
     add_tower_options(*table);
-    table->add(number_option("contact_layer", 0.0005, 0, 1, "m"));
   }
   Options o;
   o.add_table(table->rows(), table->count());
   for (const OptionInput& input : inputs) o.set(input, "test");
-  return jenga_tower_from(o);
+  return jenga_tower_from(o, 0.0005);
 }
 
 double top(const JengaTower& t, int i) {
