@@ -230,7 +230,7 @@ TEST_F(OtherHand, OwnBytesThatWouldMisalignAreRefused) {
   class Odd final : public HandTask {
    public:
     Odd(const Options& o, HandScene scene, size_t own_bytes)
-        : HandTask(kOneHand.hands, o, std::move(scene), own_bytes) {}
+        : HandTask(kOneHand.hands, o, 74, std::move(scene), own_bytes) {}
     void reset(World&, void*, Stream&) const override {}
     Verdict judge(World&, void*, int32_t) const override { return {}; }
     void observe(const World&, const void*, float*) const override {}
