@@ -48,10 +48,12 @@ typedef struct rdm_shape {   /* frozen layout: what the scene is made of, the sa
   uint8_t color[4];          /* red, green, blue, 255 */
   int32_t fixed;             /* flag: never moves */
 } rdm_shape;
+#if defined(REDMAN_AGENT_H) /* not there beside a library of policies alone */
 /* pose [num_shapes][7]: position (m), quaternion (x, y, z, w); world frame of that world. A
  * function of the library, for there is nowhere here to put the doubles of rdm_pool_get_poses. */
 RDM_API RDM_DEPRECATED("rdm_pool_get_poses")
 rdm_result rdm_pool_poses(const rdm_pool *p, int32_t env, float *pose);
+#endif
 
 #if !defined(RDM_NO_DEPRECATED)
 enum {
@@ -100,7 +102,7 @@ rdm_result rdm_policy_tensor_read(const rdm_policy *p, const char *name, float *
   return rdm_policy_get_tensor(p, name, out, count);
 }
 
-#if defined(REDMAN_AGENT_H) /* not there beside a library of policies alone */
+#if defined(REDMAN_AGENT_H)
 enum {
   RDM_SAMPLE RDM_DEPRECATED("RDM_ACT_SAMPLE") = RDM_ACT_SAMPLE,
   RDM_MEAN RDM_DEPRECATED("RDM_ACT_MEAN") = RDM_ACT_MEAN

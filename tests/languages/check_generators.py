@@ -69,9 +69,10 @@ class Generators:
                 self.same_sizes({struct: ffi.sizeof(struct) for struct in header.structs}))
 
     def swig(self, header):
-        written = self.work / "swig.c"
+        written = self.work / "swig.c"  # of what other headers define it is told, for it does not go into them
         self.run("swig", "-python", "-Werror", "-w451", "-DRDM_API=", "-DRDM_DEPRECATED(x)=", "-DRDM_NO_DEPRECATED",
-                 f"-I{self.include}", "-module", "redman", "-outdir", self.work, "-o", written, header.path)
+                 *([] if header.path.name == "agent.h" else ["-DREDMAN_AGENT_H"]), f"-I{self.include}", "-module", "redman",
+                 "-outdir", self.work, "-o", written, header.path)
         text = written.read_text()
         return set(re.findall(r"_wrap_(rdm_\w+)\(", text)), set(re.findall(r"_wrap_new_(rdm_\w+)\(", text))
 
