@@ -360,10 +360,11 @@ void OwnTask::take_options() {
       // integers are read into 32 bits
       const bool wide = made.low < -0x1p31 || made.high > 0x1p31 - 1;
       if (kind == OptionKind::kInteger && wide)
-        fail(Code::kRange, "def.options[%d]: low %g or high %g of %s is outside [-2147483648, 2147483647]", i,
-             o.low, o.high, o.key);
+        fail(Code::kRange, "def.options[%d]: low %s or high %s of %s is outside [-2147483648, 2147483647]", i,
+             Number(o.low).text, Number(o.high).text, o.key);
       if (kind != OptionKind::kText && !(made.low < made.high))
-        fail(Code::kRange, "def.options[%d]: low %g of %s is not below high %g", i, o.low, o.key, o.high);
+        fail(Code::kRange, "def.options[%d]: low %s of %s is not below high %s", i, Number(o.low).text, o.key,
+             Number(o.high).text);
     }
     if (kind == OptionKind::kText) {
       need_text(o.text, RowName("options", i, "text").text);
@@ -378,8 +379,8 @@ void OwnTask::take_options() {
       made.text = nullptr;
       if (!(o.number >= made.low && o.number <= made.high) ||
           (kind != OptionKind::kNumber && o.number != std::floor(o.number)))
-        fail(Code::kRange, "def.options[%d].number: %g of %s is outside [%g, %g], or no integer", i, o.number,
-             o.key, made.low, made.high);
+        fail(Code::kRange, "def.options[%d].number: %s of %s is outside [%s, %s], or no integer", i,
+             Number(o.number).text, o.key, Number(made.low).text, Number(made.high).text);
     }
     if (row)
       *row = made;

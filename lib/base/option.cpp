@@ -15,23 +15,11 @@ namespace {
 
 constexpr char kAnyName[] = ".FIELD";
 
-// Nine digits where they are enough, else as few as read back exactly.
-void print_number(double v, char* out) {
-  char* const last = out + kOptionTextSize - 1;
-  const char* end = to_chars(out, last, v, 9).ptr;
-  double back = 0;
-  from_chars(out, end, back);
-  if (back != v) end = to_chars(out, last, v).ptr;
-  out[end - out] = '\0';
-}
-
 void print_range(const OptionRange& v, char* out) {
-  print_number(v.low, out);
-  if (!v.drawn()) return;
-  char high[kOptionTextSize];
-  print_number(v.high, high);
-  const size_t at = std::strlen(out);
-  print_text(out + at, kOptionTextSize - at, "..%s", high);  // 24 characters a number at most
+  if (v.drawn())
+    print_text(out, kOptionTextSize, "%s..%s", Number(v.low).text, Number(v.high).text);
+  else
+    copy_text(out, kOptionTextSize, Number(v.low).text);
 }
 
 // The line from `begin` to `end` as key and value, blanks about them cut off; false when it is empty.
@@ -190,12 +178,14 @@ void Options::assign(Row& row, const OptionInput& input, const char* owner) cons
   for (const double x : {v.low, v.high}) {
     if (!std::isfinite(x)) fail(Code::kArgument, "%s option %s: the value is not finite", owner, key);
     if (x < s.low || x > s.high)
-      fail(Code::kRange, "%s option %s: %.9g is outside [%.9g, %.9g]", owner, key, x, s.low, s.high);
+      fail(Code::kRange, "%s option %s: %s is outside [%s, %s]", owner, key, Number(x).text,
+           Number(s.low).text, Number(s.high).text);
     if (s.kind != OptionKind::kNumber && x != std::floor(x))
-      fail(Code::kRange, "%s option %s: %.9g is not a whole number", owner, key, x);
+      fail(Code::kRange, "%s option %s: %s is not a whole number", owner, key, Number(x).text);
   }
   if (v.low > v.high)
-    fail(Code::kRange, "%s option %s: the range %.9g..%.9g begins above its end", owner, key, v.low, v.high);
+    fail(Code::kRange, "%s option %s: the range %s..%s begins above its end", owner, key, Number(v.low).text,
+         Number(v.high).text);
   row.value = v;
 }
 

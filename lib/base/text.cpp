@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <cstring>
 
+#include "base/chars.hpp"
+
 namespace rdm {
 namespace {
 
@@ -91,6 +93,15 @@ void copy_text(char* out, size_t size, const char* text) {
 Quoted::Quoted(const char* name) {
   if (!name) name = "NULL";
   if (!clean_text(text, sizeof text - 3, name)) std::strcat(text, "...");
+}
+
+Number::Number(double v) {
+  char* const last = text + sizeof text - 1;
+  char* end = to_chars(text, last, v, 9).ptr;
+  double back = 0;
+  from_chars(text, end, back);
+  if (back != v) end = to_chars(text, last, v).ptr;
+  *end = '\0';
 }
 
 }  // namespace rdm

@@ -25,4 +25,11 @@ struct Quoted {
   char text[64 + 3 + 1];              // "..." where the name was cut
 };
 
+// A number for an error text or a list of options: nine digits where they are enough, else as few as read back
+// exactly, so that what is outside of its bounds looks so.
+struct Number {
+  explicit Number(double v);
+  char text[32];
+};
+
 }  // namespace rdm

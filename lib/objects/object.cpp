@@ -131,7 +131,9 @@ struct Check {
   }
   void within(double value, double low, double high, const char* what) const {
     if (!std::isfinite(value)) bad(Code::kArgument, "%s is not finite", what);
-    if (value < low || value > high) bad(Code::kRange, "%s %g is outside [%g, %g]", what, value, low, high);
+    if (value < low || value > high)
+      bad(Code::kRange, "%s %s is outside [%s, %s]", what, Number(value).text, Number(low).text,
+          Number(high).text);
   }
   // Room for what tells its shapes apart.
   void name(const char* text) const {

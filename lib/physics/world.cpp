@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "physics/articulated/articulated_world.hpp"
 #include "physics/kinematic_world.hpp"
 #include "physics/model/soft_limits.hpp"
@@ -219,7 +220,8 @@ void World::place_joints(const double* q, const double* qd) {
     if (led(i, q)) continue;
     if (!std::isfinite(q[i])) fail(Code::kArgument, "q: joint %s is not finite", name(i));
     if (!sound_joint(joint, scene_->def.solver, q[i]))
-      fail(Code::kRange, "q: %g of joint %s is outside [%g, %g]", q[i], name(i), joint.lower, joint.upper);
+      fail(Code::kRange, "q: %s of joint %s is outside [%s, %s]", Number(q[i]).text, name(i),
+           Number(joint.lower).text, Number(joint.upper).text);
   }
   for (int32_t i = 0; qd && i < scene_->num_links; ++i) {
     if (led(i, qd)) continue;

@@ -36,7 +36,8 @@ struct Check {
   void within(double value, double low, double high, const char* row, const char* what) const {
     if (!std::isfinite(value)) bad(Code::kArgument, "%s: %s is not finite", Quoted(row).text, what);
     if (value < low || value > high)
-      bad(Code::kRange, "%s: %s %g is outside [%g, %g]", Quoted(row).text, what, value, low, high);
+      bad(Code::kRange, "%s: %s %s is outside [%s, %s]", Quoted(row).text, what, Number(value).text,
+          Number(low).text, Number(high).text);
   }
   void within(const Vec3& v, const char* row, const char* what) const {
     for (int i = 0; i < 3; ++i) within(v[i], -kMost, kMost, row, what);

@@ -94,6 +94,7 @@ TEST(Options, BoundsAreInclusiveAndKept) {
   EXPECT_EQ(set(o, "gamma", nullptr, 0), Code::kOk);
   EXPECT_EQ(set(o, "gamma", nullptr, 1), Code::kOk);
   EXPECT_EQ(set(o, "gamma", nullptr, std::nextafter(1.0, 2.0)), Code::kRange);
+  EXPECT_STREQ(last_error(), "task option gamma: 1.0000000000000002 is outside [0, 1]");
   EXPECT_EQ(set(o, "gamma", "-0.1"), Code::kRange);
   EXPECT_STREQ(last_error(), "task option gamma: -0.1 is outside [0, 1]");
   EXPECT_EQ(o.number("gamma"), 1.0);

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <string>
 
@@ -72,6 +74,18 @@ TEST(Text, QuotedNamesAreShort) {
   std::string accents = "x";
   for (int i = 0; i < 40; ++i) accents += "\u00e9";
   EXPECT_EQ(Quoted(accents.c_str()).text, accents.substr(0, 63) + "...");
+}
+
+TEST(Text, NumbersReadBackExactly) {
+  for (const double v : {0.1, 1e5, 1048576.0, 2147483647.0, 68719476736.0, 1.0 / 3, 1e-300, -1.7e308}) {
+    const Number n(v);
+    EXPECT_EQ(std::strtod(n.text, nullptr), v) << n.text;
+  }
+  EXPECT_STREQ(Number(100000).text, "100000");
+  EXPECT_STREQ(Number(0.1).text, "0.1");
+  EXPECT_STREQ(Number(68719476736.0).text, "68719476736");
+  EXPECT_STREQ(Number(std::nextafter(1.0, 2.0)).text, "1.0000000000000002");
+  EXPECT_STREQ(Number(std::nan("")).text, "nan");
 }
 
 TEST(Text, ErrorTextsEndWithAWholeCharacter) {

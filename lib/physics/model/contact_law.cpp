@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 
 namespace rdm {
 namespace {
@@ -16,7 +17,8 @@ double impedance(const ContactLaw& law, double depth) {
 
 void need(double value, double low, double high, const char* field) {
   if (!(value >= low && value <= high))
-    fail(Code::kRange, "contact law: %s: %g is outside [%g, %g]", field, value, low, high);
+    fail(Code::kRange, "contact law: %s: %s is outside [%s, %s]", field, Number(value).text, Number(low).text,
+         Number(high).text);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 
 namespace rdm {
 namespace {
@@ -96,8 +97,8 @@ void Dynamics::check(const Scene& scene) const {
     fail(Code::kArgument, "dynamics: it is of another scene");
   const auto need = [](double x, const double* bounds, const char* field, const char* kind, int32_t i) {
     if (!inside(x, bounds))
-      fail(Code::kRange, "dynamics: factor %g of %s of %s %d is outside [%g, %g]", x, field, kind, i,
-           bounds[0], bounds[1]);
+      fail(Code::kRange, "dynamics: factor %s of %s of %s %d is outside [%s, %s]", Number(x).text, field,
+           kind, i, Number(bounds[0]).text, Number(bounds[1]).text);
   };
   need(gravity, kGravityFactor, "gravity", "world", 0);
   for (int32_t i = 0; i < num_links; ++i) visit_link(links[i], i, need);

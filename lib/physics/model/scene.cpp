@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "physics/model/inertia.hpp"
 #include "physics/model/soft_limits.hpp"
 #include "physics/model/validate.hpp"
@@ -13,7 +14,8 @@ namespace {
 
 void need(double value, double low, double high, const char* owner, const char* field) {
   if (!(value >= low && value <= high))
-    fail(Code::kRange, "%s: %s %g is outside [%g, %g]", owner, field, value, low, high);
+    fail(Code::kRange, "%s: %s %s is outside [%s, %s]", owner, field, Number(value).text, Number(low).text,
+         Number(high).text);
 }
 
 void need_finite(const Vec3& v, const char* owner, const char* field) {

@@ -21,6 +21,7 @@
 
 #include "base/elementary.hpp"
 #include "base/error.hpp"
+#include "base/text.hpp"
 #include "sense/map/occupancy_tree.hpp"
 
 namespace rdm {
@@ -35,7 +36,9 @@ float log_odds(double p) {
 }
 
 void check_range(const char* name, double v, double low, double high) {
-  if (!(v >= low && v <= high)) fail(Code::kRange, "%s: %g is outside [%g, %g]", name, v, low, high);
+  if (!(v >= low && v <= high))
+    fail(Code::kRange, "%s: %s is outside [%s, %s]", name, Number(v).text, Number(low).text,
+         Number(high).text);
 }
 
 void check(const OccupancyConfig& c) {
