@@ -2,9 +2,9 @@
 # The public headers compile alone in every dialect without a warning, no struct of the C ones has hidden
 # padding, everything in them has a comment, and no line is longer than 100 columns. Arguments: the project's
 # root, a C and a C++ compiler. The owners in C++ compile without exceptions, too, and where REDMAN_THROW is
-# not given then, they say so.
+# not given then, they say so. What a library of policies alone installs compiles without the other headers.
 set -u
-root=$1 cc=$2 cxx=$3
+root=$1 cc=$2 cxx=$3 include=$1/include
 status=0
 strict='-Wall -Wextra -pedantic -Werror -fsyntax-only'
 try() { # try COMPILER LANGUAGE HEADER DIALECT
@@ -13,7 +13,7 @@ try() { # try COMPILER LANGUAGE HEADER DIALECT
   case $3 in redman.* | deprecated.h) macros='RDM_STABLE_ONLY RDM_EXPERIMENTAL' ;; *) macros=RDM_STABLE_ONLY ;; esac
   for macro in $macros; do
     # shellcheck disable=SC2086
-    printf '#include <redman/%s>\n' "$3" | "$1" -x "$2" "-std=$4" "-D$macro" "-I$root/include" $strict $padded - ||
+    printf '#include <redman/%s>\n' "$3" | "$1" -x "$2" "-std=$4" "-D$macro" "-I$include" $strict $padded - ||
       { echo "$3 as $4 with $1: see above"; status=1; }
   done
 }
@@ -39,6 +39,15 @@ for compiler in "$cxx" clang++; do
   done
   echo '#include <redman/redman.hpp>' | "$compiler" -x c++ -std=c++17 -fno-exceptions "-I$root/include" -fsyntax-only - 2>&1 |
     grep -q 'error: .*define REDMAN_THROW' || { echo "redman.hpp without exceptions asks for no REDMAN_THROW with $compiler"; status=1; }
+done
+include=$(mktemp -d) || exit 1
+trap 'rm -rf "$include"' EXIT
+sh "$root/cmake/policy_headers.sh" "$root/include" "$include" || status=1
+for header in $(cd "$include/redman" && ls); do
+  case $header in
+    *.h) try "$cc" c "$header" c99 ;;
+    *) try "$cxx" c++ "$header" c++17 ;;
+  esac
 done
 bare=$(awk -v mode=docs -f "$root/tests/rules/header.awk" "$root"/include/redman/*.h)
 [ -z "$bare" ] || { echo "$bare"; status=1; }
