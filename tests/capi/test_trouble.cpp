@@ -100,6 +100,32 @@ TEST(Trouble, AStepThatIsNotFiniteIsOfItsEpisode) {
   EXPECT_EQ(e.flags, RDM_EPOCH_DIVERGED);
 }
 
+// Of a host's own environment, whose rewards no pool has looked at.
+TEST(Trouble, GradientsThatAreLeftOutAreCounted) {
+  rdm_agent_config c;
+  rdm_agent* agent = nullptr;
+  ASSERT_EQ(rdm_agent_config_init(&c, sizeof c), RDM_OK);
+  c.obs_dim = c.action_dim = c.num_envs = 1;
+  c.settings = "horizon=16\nhidden=4\nminibatches=1";
+  ASSERT_EQ(rdm_agent_create(&agent, &c), RDM_OK) << rdm_last_error();
+  const float obs = 0, cost = 0;
+  for (const float reward : {3e38f, 1.0f}) {  // finite; two of the first are not
+    for (int32_t t = 0; t < 16; ++t) {
+      float action = 0;
+      ASSERT_EQ(rdm_agent_act(agent, &obs, RDM_ACT_SAMPLE, &action), RDM_OK);
+      rdm_transition row{};
+      row.struct_size = sizeof row, row.reward = &reward, row.cost = &cost;
+      ASSERT_EQ(rdm_agent_record(agent, &row), RDM_OK) << rdm_agent_error(agent);
+    }
+    rdm_epoch e{};
+    e.struct_size = sizeof e;
+    ASSERT_EQ(rdm_agent_update(agent, &obs, &e), RDM_OK) << rdm_agent_error(agent);
+    EXPECT_EQ(e.skipped_gradients > 0, reward > 1) << reward;
+    EXPECT_EQ((e.flags & RDM_EPOCH_SKIPPED_GRADIENTS) != 0, reward > 1) << reward;
+  }
+  rdm_agent_destroy(agent);
+}
+
 TEST(Trouble, ActionsThatAreNotFiniteAreCounted) {
   CalledTask task("nan_action");
   Pool p("nan_action", nullptr, RDM_AUTORESET_NEXT_STEP);
