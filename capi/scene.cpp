@@ -230,7 +230,7 @@ void rdm::capi::begin_scene(const OwnTask& own, const Options& options, rdm_scen
   scene->options = &options;
   scene->def.gravity = gravity_from(options);
   scene->def.solver = solver_from(options);
-  scene->draws.add(drawn_option(options, "gravity"), Drawn::kGravity);
+  scene->draws.add(drawn_gravity(options), Drawn::kGravity);
   scene->def.adjustable = !scene->draws.empty();
   scene->materials.push_back("default");
   scene->frictions.push_back(kNoFriction);

@@ -132,7 +132,7 @@ class Registration {
   void shared_option(const Table& t, const toml::node& value, rdm_option_def* o) {
     const OptionSpec* row = nullptr;
     std::vector<std::string> names;
-    for (const OptionSpec& r : kSimulationRows) {
+    for (const OptionSpec& r : kSimulationRows.specs) {
       names.emplace_back(r.key);
       if (rdm::same_name(r.key, o->key)) row = &r;
     }

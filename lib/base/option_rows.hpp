@@ -138,7 +138,7 @@ void row_does_not_fit_its_member();
 template <auto kMember, auto... kWords>
 consteval auto row(const OptionSpec& spec) {
   using Member = OptionMember<kMember, kWords...>;
-  if (spec.open || !Member::Value::fits(spec)) row_does_not_fit_its_member();
+  if (!Member::Value::fits(spec)) row_does_not_fit_its_member();
   return OptionRows<typename Member::Struct, Member>{{spec}};
 }
 

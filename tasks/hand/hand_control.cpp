@@ -124,7 +124,7 @@ HandScene make_hand_scene(const HandControlConfig& config, const Options& o, int
   const HandOptions options = kRows.read(o);
   HandScene s;
   s.gravity = gravity_from(o);
-  s.draws.add(drawn_option(o, "gravity"), Drawn::kGravity);
+  s.draws.add(drawn_gravity(o), Drawn::kGravity);
   s.solver = solver_from(o);
   int32_t links = 0;
   for (int32_t i = 0; i < config.count; ++i) {

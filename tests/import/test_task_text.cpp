@@ -364,7 +364,7 @@ TEST(TaskText, ResetsDraw) {
 }
 
 TEST(TaskText, TakesEachOptionOfTimeAndSolver) {
-  for (const rdm::OptionSpec& row : rdm::kSimulationRows) {
+  for (const rdm::OptionSpec& row : rdm::kSimulationRows.specs) {
     SCOPED_TRACE(row.key);
     std::string line = std::string(row.key) + " = ";
     if (row.kind == rdm::OptionKind::kText)

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <iterator>
 
 #include "base/error.hpp"
 #include "base/hash.hpp"
@@ -10,34 +9,39 @@
 namespace rdm {
 namespace {
 
-constexpr OptionSpec kDisturbRows[] = {
-    open_option(
+// What fields may have, and the rest.
+struct AllRows : FieldDisturbance, DisturbOptions {};
+constexpr auto kDisturbRows = option_rows<AllRows>(
+    row<&FieldDisturbance::noise>(open_option(
         drawable(basic(number_option("noise.FIELD", 0, 0, 1000,
                                      "deviation of normal noise on the field's entries, new in each "
                                      "control step; in the field's unit, cut "
-                                     "at its bounds; FIELD: a field, or several by '*', later lines win")))),
-    open_option(drawable(number_option(
+                                     "at its bounds; FIELD: a field, or several by '*', later lines win"))))),
+    row<&FieldDisturbance::bias>(open_option(drawable(number_option(
         "bias.FIELD", 0, 0, 1000,
-        "each entry of the field is off by what is drawn from +-this at a reset; in the field's unit"))),
-    open_option(drawable(
+        "each entry of the field is off by what is drawn from +-this at a reset; in the field's unit")))),
+    row<&FieldDisturbance::delay>(open_option(drawable(
         basic(integer_option("delay.FIELD", 0, 0, kMaxDelay,
-                             "control steps by which the field is late; the reset's value before")))),
-    open_option(
+                             "control steps by which the field is late; the reset's value before"))))),
+    row<&FieldDisturbance::dropout>(open_option(
         drawable(number_option("dropout.FIELD", 0, 0, 1,
-                               "probability in a control step that the field stays as it was shown last"))),
-    drawable(
+                               "probability in a control step that the field stays as it was shown last")))),
+    row<&DisturbOptions::action_delay>(drawable(
         basic(integer_option("action_delay", 0, 0, kMaxDelay,
-                             "control steps by which actions are late; the hold action before the first"))),
-    basic(flag_option("end_on_cost", false,
-                      "a cost that is not 0, of column 0 or of one with a limit, ends the episode")),
-};
+                             "control steps by which actions are late; the hold action before the first")))),
+    row<&DisturbOptions::end_on_cost>(
+        basic(flag_option("end_on_cost", false,
+                          "a cost that is not 0, of column 0 or of one with a limit, ends the episode"))));
 
+template <auto kMember>
+bool is_row_of(const OptionSpec& spec) {
+  return &spec == &kDisturbRows.of<kMember>();
+}
 OptionRange FieldDisturbance::*member_of(const OptionSpec& spec) {
-  constexpr OptionRange FieldDisturbance::*kMembers[] = {&FieldDisturbance::noise, &FieldDisturbance::bias,
-                                                         &FieldDisturbance::delay,
-                                                         &FieldDisturbance::dropout};
-  return &spec >= kDisturbRows && &spec < kDisturbRows + std::size(kMembers) ? kMembers[&spec - kDisturbRows]
-                                                                             : nullptr;
+  if (is_row_of<&FieldDisturbance::noise>(spec)) return &FieldDisturbance::noise;
+  if (is_row_of<&FieldDisturbance::bias>(spec)) return &FieldDisturbance::bias;
+  if (is_row_of<&FieldDisturbance::delay>(spec)) return &FieldDisturbance::delay;
+  return is_row_of<&FieldDisturbance::dropout>(spec) ? &FieldDisturbance::dropout : nullptr;
 }
 
 [[noreturn]] void unknown(const char* owner, const char* key, const char* name, const Task& task) {
@@ -50,14 +54,13 @@ OptionRange FieldDisturbance::*member_of(const OptionSpec& spec) {
 }  // namespace
 
 const OptionSpec* disturb_options(int32_t* count) {
-  *count = static_cast<int32_t>(std::size(kDisturbRows));
-  return kDisturbRows;
+  *count = static_cast<int32_t>(kDisturbRows.size());
+  return kDisturbRows.specs;
 }
 
 Disturbance disturbance_from(const Options& options, const Task& task, const char* owner) {
   Disturbance d;
-  d.action_delay = options.range("action_delay");
-  d.end_on_cost = options.flag("end_on_cost");
+  static_cast<DisturbOptions&>(d) = kDisturbRows.read(options);
   Vector<FieldDisturbance> all;
   for (int32_t i = 0, offset = 0; i < static_cast<int32_t>(task.fields().size()); ++i) {
     const FieldSpec f = bounded_field(task, i);
@@ -89,7 +92,7 @@ Disturbance disturbance_from(const Options& options, const Task& task, const cha
 uint64_t hash_disturbance(const Options& options, uint64_t hash) {
   for (int32_t i = 0; i < options.count(); ++i) {
     const OptionSpec& spec = options.spec(i);
-    if (&spec < kDisturbRows || &spec >= kDisturbRows + std::size(kDisturbRows)) continue;
+    if (&spec < kDisturbRows.specs || &spec >= kDisturbRows.specs + kDisturbRows.size()) continue;
     const OptionRange value = options.range(i);
     if (!options.open_name(i) && value.low == spec.number && !value.drawn()) continue;
     hash = hash_bytes(options.key(i), std::strlen(options.key(i)) + 1, hash);

@@ -3,7 +3,7 @@
 #pragma once
 #include <cstdint>
 
-#include "base/option.hpp"
+#include "base/option_rows.hpp"
 #include "env/task.hpp"
 
 namespace rdm {
@@ -20,10 +20,12 @@ struct FieldDisturbance {
   OptionRange dropout;      // probability in a step that the field stays as it was shown last
 };
 
-struct Disturbance {
-  Vector<FieldDisturbance> fields;  // in the order of the row, those alone that any option names
-  OptionRange action_delay;         // control steps
+struct DisturbOptions {
+  OptionRange action_delay;  // control steps
   bool end_on_cost = false;
+};
+struct Disturbance : DisturbOptions {
+  Vector<FieldDisturbance> fields;  // in the order of the row, those alone that any option names
 
   bool delays_actions() const { return action_delay.high > 0; }
   // A world has numbers of its own for it.

@@ -3,7 +3,7 @@
 #pragma once
 #include <cstdint>
 
-#include "base/option.hpp"
+#include "base/option_rows.hpp"
 #include "env/task.hpp"
 
 namespace rdm {

@@ -25,13 +25,20 @@ constexpr JointRow kJointRows[] = {
 // What a range of each joint field draws; an armature stays what it is.
 constexpr Drawn kDrawnFields[] = {Drawn::kLinkKp, Drawn::kLinkKd, Drawn::kLinkEffort, Drawn::kLinkFriction};
 
-constexpr OptionSpec kScales[] = {
-    drawable(number_option("scale.effort", 1, 0.01, 100, "factor on the effort bounds of all drives")),
-    drawable(number_option("scale.kp", 1, 0, 100, "factor on the stiffness of all drives")),
-    drawable(number_option("scale.kd", 1, 0.01, 100, "factor on the damping of all drives")),
-    drawable(number_option("scale.mass", 1, 0.1, 100, "factor on all link masses and moments")),
-    drawable(number_option("scale.friction", 1, 0, 100, "factor on the dry friction of all joints")),
+struct ScaleOptions {
+  DrawnOption effort, kp, kd, mass, friction;
 };
+constexpr auto kScales = option_rows<ScaleOptions>(
+    row<&ScaleOptions::effort>(
+        drawable(number_option("scale.effort", 1, 0.01, 100, "factor on the effort bounds of all drives"))),
+    row<&ScaleOptions::kp>(
+        drawable(number_option("scale.kp", 1, 0, 100, "factor on the stiffness of all drives"))),
+    row<&ScaleOptions::kd>(
+        drawable(number_option("scale.kd", 1, 0.01, 100, "factor on the damping of all drives"))),
+    row<&ScaleOptions::mass>(
+        drawable(number_option("scale.mass", 1, 0.1, 100, "factor on all link masses and moments"))),
+    row<&ScaleOptions::friction>(
+        drawable(number_option("scale.friction", 1, 0, 100, "factor on the dry friction of all joints"))));
 
 const char* field_name(JointField field) {
   return kJointFields[static_cast<int>(field)];
@@ -79,17 +86,18 @@ void apply_robot_options(const Options& options, const Robot& robot, const char*
     override_mass(def, prefix, link.name, options.number(key.text));
     draws->add(drawn_option(options, key.text), Drawn::kLinkMass, first + i);
   }
-  scale_joints(def, JointField::kKp, options.number("scale.kp"));
-  scale_joints(def, JointField::kKd, options.number("scale.kd"));
-  scale_joints(def, JointField::kFriction, options.number("scale.friction"));
-  scale_joints(def, JointField::kEffort, options.number("scale.effort"));
-  scale_mass(def, options.number("scale.mass"));
-  draws->add(drawn_option(options, "scale.kp"), Drawn::kLinkKp, first, robot.links.count);
-  draws->add(drawn_option(options, "scale.kd"), Drawn::kLinkKd, first, robot.links.count);
-  draws->add(drawn_option(options, "scale.friction"), Drawn::kLinkFriction, first, robot.links.count);
-  draws->add(drawn_option(options, "scale.effort"), Drawn::kLinkEffort, first, robot.links.count);
-  draws->add(drawn_option(options, "scale.mass"), Drawn::kLinkMass, first, robot.links.count);
-  draws->add(drawn_option(options, "scale.mass"), Drawn::kBaseMass, index);
+  const ScaleOptions scale = kScales.read(options);
+  scale_joints(def, JointField::kKp, scale.kp.middle);
+  scale_joints(def, JointField::kKd, scale.kd.middle);
+  scale_joints(def, JointField::kFriction, scale.friction.middle);
+  scale_joints(def, JointField::kEffort, scale.effort.middle);
+  scale_mass(def, scale.mass.middle);
+  draws->add(scale.kp, Drawn::kLinkKp, first, robot.links.count);
+  draws->add(scale.kd, Drawn::kLinkKd, first, robot.links.count);
+  draws->add(scale.friction, Drawn::kLinkFriction, first, robot.links.count);
+  draws->add(scale.effort, Drawn::kLinkEffort, first, robot.links.count);
+  draws->add(scale.mass, Drawn::kLinkMass, first, robot.links.count);
+  draws->add(scale.mass, Drawn::kBaseMass, index);
 }
 
 }  // namespace rdm

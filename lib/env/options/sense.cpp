@@ -9,36 +9,60 @@
 namespace rdm {
 namespace {
 
-constexpr OptionSpec kSenseRows[] = {
-    basic(text_option(
-        "modality", "state", nullptr,
-        "what worlds see: state, or any of rgb, depth, segmentation, points, voxels joined by +")),
-    integer_option(
-        "sense_every", 1, 1, 10000,
-        "control steps of an episode from look to look: rows show the last one; a policy's action_repeat"),
-    basic(text_option("cameras", "front", nullptr, "cameras of rgb, depth and segmentation, joined by +")),
-    integer_option("image_width", 64, 1, 2048, "of rgb, depth and segmentation, pixels"),
-    integer_option("image_height", 64, 1, 2048, "of rgb, depth and segmentation, pixels"),
-    text_option("cloud_cameras", "above+side_right+side_left", nullptr,
-                "depth cameras of points and voxels, joined by +"),
-    integer_option("cloud_width", 96, 1, 512, "of a depth camera of points and voxels, pixels"),
-    integer_option("cloud_height", 96, 1, 512, "of a depth camera of points and voxels, pixels"),
-    number_option("cloud_range", 2, 0.01, 100,
-                  "points further than this from what the first cloud camera looks at are left out, m"),
-    basic(integer_option("points", 2048, 1, 65536, "points of a world")),
-    text_option("sampling", "furthest", "furthest|random|voxel", "how points are chosen of those seen"),
-    number_option("sampling_voxel", 0.01, 0.001, 1, "sampling = voxel: side of a voxel, m"),
-    number_option("point_noise", 0, 0, 0.5, "deviation of the noise on each coordinate of a point, m"),
-    number_option("point_dropout", 0, 0, 1, "share of the points that are lost; others stand for them"),
-    integer_option("goal_points", 0, 0, 65535,
-                   "of the points, the last so many lie on the object where it is to be brought"),
-    flag_option("point_color", false, "points have the colours of what they lie on"),
-    number_option(
-        "camera_noise", 0, 0, 1,
-        "half width of the draw, each episode, by which eye and target of cloud_cameras are off, m"),
-    integer_option("voxels", 16, 1, 128, "cells along a side of the local grid"),
-    number_option("voxel_size", 0.03, 0.001, 1, "side of a cell, m"),
+struct SenseOptions {
+  const char *modality, *cameras, *cloud_cameras;  // of the Options
+  int32_t sense_every, image_width, image_height, cloud_width, cloud_height;
+  double cloud_range;
+  int32_t points;
+  Thinning sampling;
+  double sampling_voxel, point_noise, point_dropout;
+  int32_t goal_points;
+  bool point_color;
+  double camera_noise;
+  int32_t voxels;
+  double voxel_size;
 };
+constexpr auto kSenseRows = option_rows<SenseOptions>(
+    row<&SenseOptions::modality>(basic(text_option(
+        "modality", "state", nullptr,
+        "what worlds see: state, or any of rgb, depth, segmentation, points, voxels joined by +"))),
+    row<&SenseOptions::sense_every>(integer_option(
+        "sense_every", 1, 1, 10000,
+        "control steps of an episode from look to look: rows show the last one; a policy's action_repeat")),
+    row<&SenseOptions::cameras>(basic(
+        text_option("cameras", "front", nullptr, "cameras of rgb, depth and segmentation, joined by +"))),
+    row<&SenseOptions::image_width>(
+        integer_option("image_width", 64, 1, 2048, "of rgb, depth and segmentation, pixels")),
+    row<&SenseOptions::image_height>(
+        integer_option("image_height", 64, 1, 2048, "of rgb, depth and segmentation, pixels")),
+    row<&SenseOptions::cloud_cameras>(text_option("cloud_cameras", "above+side_right+side_left", nullptr,
+                                                  "depth cameras of points and voxels, joined by +")),
+    row<&SenseOptions::cloud_width>(
+        integer_option("cloud_width", 96, 1, 512, "of a depth camera of points and voxels, pixels")),
+    row<&SenseOptions::cloud_height>(
+        integer_option("cloud_height", 96, 1, 512, "of a depth camera of points and voxels, pixels")),
+    row<&SenseOptions::cloud_range>(
+        number_option("cloud_range", 2, 0.01, 100,
+                      "points further than this from what the first cloud camera looks at are left out, m")),
+    row<&SenseOptions::points>(basic(integer_option("points", 2048, 1, 65536, "points of a world"))),
+    row<&SenseOptions::sampling, Thinning::kFurthest, Thinning::kRandom, Thinning::kVoxel>(
+        text_option("sampling", "furthest", "furthest|random|voxel", "how points are chosen of those seen")),
+    row<&SenseOptions::sampling_voxel>(
+        number_option("sampling_voxel", 0.01, 0.001, 1, "sampling = voxel: side of a voxel, m")),
+    row<&SenseOptions::point_noise>(
+        number_option("point_noise", 0, 0, 0.5, "deviation of the noise on each coordinate of a point, m")),
+    row<&SenseOptions::point_dropout>(
+        number_option("point_dropout", 0, 0, 1, "share of the points that are lost; others stand for them")),
+    row<&SenseOptions::goal_points>(
+        integer_option("goal_points", 0, 0, 65535,
+                       "of the points, the last so many lie on the object where it is to be brought")),
+    row<&SenseOptions::point_color>(
+        flag_option("point_color", false, "points have the colours of what they lie on")),
+    row<&SenseOptions::camera_noise>(number_option(
+        "camera_noise", 0, 0, 1,
+        "half width of the draw, each episode, by which eye and target of cloud_cameras are off, m")),
+    row<&SenseOptions::voxels>(integer_option("voxels", 16, 1, 128, "cells along a side of the local grid")),
+    row<&SenseOptions::voxel_size>(number_option("voxel_size", 0.03, 0.001, 1, "side of a cell, m")));
 
 constexpr double kCloudFov = 57 * kPi / 180;
 constexpr CameraSpec kCloudCameras[] = {
@@ -74,8 +98,8 @@ int32_t read_cameras(const char* list, const TaskInfo& info, const Task& task, c
 }  // namespace
 
 const OptionSpec* sense_options(int32_t* count) {
-  *count = static_cast<int32_t>(std::size(kSenseRows));
-  return kSenseRows;
+  *count = static_cast<int32_t>(kSenseRows.size());
+  return kSenseRows.specs;
 }
 
 const CameraSpec* camera_at(const TaskInfo& info, const Task& task, int32_t i) {
@@ -109,6 +133,7 @@ Camera camera_of(const TaskInfo& info, const Task& task, const char* name) {
 }
 
 SenseConfig sense_from(const Options& options, const TaskInfo& info, const Task& task) {
+  const SenseOptions o = kSenseRows.read(options);
   SenseConfig c;
   struct Word {
     const char* name;
@@ -118,7 +143,7 @@ SenseConfig sense_from(const Options& options, const TaskInfo& info, const Task&
   const Word words[] = {{"state", &state},     {"rgb", &c.rgb},
                         {"depth", &c.depth},   {"segmentation", &c.segmentation},
                         {"points", &c.points}, {"voxels", &c.voxels}};
-  each_word(options.text("modality"), [&](const char* word) {
+  each_word(o.modality, [&](const char* word) {
     const char* names[std::size(words)];
     for (size_t i = 0; i < std::size(words); ++i) {
       names[i] = words[i].name;
@@ -129,39 +154,35 @@ SenseConfig sense_from(const Options& options, const TaskInfo& info, const Task&
     fail(Code::kArgument, "modality %s: unknown%s", Quoted(word).text,
          Nearest(word, names, static_cast<int32_t>(std::size(words))).text);
   });
-  c.every = options.integer("sense_every");
+  c.every = o.sense_every;
   if (c.pictures()) {
-    c.num_cameras = read_cameras(options.text("cameras"), info, task, "cameras", c.cameras);
-    c.width = options.integer("image_width");
-    c.height = options.integer("image_height");
+    c.num_cameras = read_cameras(o.cameras, info, task, "cameras", c.cameras);
+    c.width = o.image_width;
+    c.height = o.image_height;
   }
   if (c.clouds()) {
-    c.num_cloud_cameras =
-        read_cameras(options.text("cloud_cameras"), info, task, "cloud_cameras", c.cloud_cameras);
-    c.cloud_width = options.integer("cloud_width");
-    c.cloud_height = options.integer("cloud_height");
-    c.range = options.number("cloud_range");
-    c.camera_noise = options.number("camera_noise");
+    c.num_cloud_cameras = read_cameras(o.cloud_cameras, info, task, "cloud_cameras", c.cloud_cameras);
+    c.cloud_width = o.cloud_width;
+    c.cloud_height = o.cloud_height;
+    c.range = o.cloud_range;
+    c.camera_noise = o.camera_noise;
   }
   if (c.points) {
-    c.num_points = options.integer("points");
-    const char* sampling = options.text("sampling");
-    c.thinning = same_name(sampling, "random")  ? Thinning::kRandom
-                 : same_name(sampling, "voxel") ? Thinning::kVoxel
-                                                : Thinning::kFurthest;
-    c.thinning_voxel = options.number("sampling_voxel");
-    c.point_noise = options.number("point_noise");
-    c.point_dropout = options.number("point_dropout");
-    c.point_color = options.flag("point_color");
-    c.goal_points = options.integer("goal_points");
+    c.num_points = o.points;
+    c.thinning = o.sampling;
+    c.thinning_voxel = o.sampling_voxel;
+    c.point_noise = o.point_noise;
+    c.point_dropout = o.point_dropout;
+    c.point_color = o.point_color;
+    c.goal_points = o.goal_points;
     if (c.goal_points && !task.has_goal())
       fail(Code::kArgument, "goal_points: task %s brings no object to a pose", info.name);
     if (c.goal_points >= c.num_points)
       fail(Code::kRange, "goal_points: %d is outside [0, points - 1 = %d]", c.goal_points, c.num_points - 1);
   }
   if (c.voxels) {
-    c.grid = options.integer("voxels");
-    c.cell = options.number("voxel_size");
+    c.grid = o.voxels;
+    c.cell = o.voxel_size;
   }
   return c;
 }

@@ -2,7 +2,7 @@
 #pragma once
 #include <cstdint>
 
-#include "base/option.hpp"
+#include "base/option_rows.hpp"
 #include "env/task.hpp"
 #include "sense/cloud/cloud.hpp"
 #include "sense/render/camera.hpp"
