@@ -12,7 +12,7 @@
 //       row<&Values::shape, Shape::kEgg, Shape::kBox>(text_option("shape", "egg", "egg|box", "of the object")));
 //
 // kRows.specs is the table, kRows.read(options) a Values. A part of a list may be a list, over the struct or a
-// base of it.
+// base of it. kRows.with<&Values::mass>(2) has another default; kRows.of<&Values::mass>() is the row itself.
 #pragma once
 #include <algorithm>
 #include <cstddef>

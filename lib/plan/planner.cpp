@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "base/fpmode.hpp"
 #include "base/hash.hpp"
+#include "base/option_rows.hpp"
 
 namespace rdm {
 namespace {
@@ -19,31 +20,46 @@ constexpr int32_t kMaxSamples = 65536, kMaxHorizon = 10000;
 constexpr double kMaxNoise = 10;
 constexpr int64_t kMaxNumbers = int64_t{1} << 28;  // of an array
 
-constexpr OptionSpec kRows[] = {
-    text_option("method", "predictive", "predictive|cem|mppi",
-                "how the plan moves: to the best sample, the elites' mean, or a mean weighted by return"),
-    integer_option("samples", 64, 1, kMaxSamples, "worlds that are rolled out in each iteration"),
-    basic(integer_option("horizon", 32, 1, kMaxHorizon, "steps of the pool that a plan looks ahead")),
-    integer_option("knots", 5, 1, kMaxHorizon, "values of the noise over a plan, the horizon at most"),
-    text_option("interpolation", "linear", "zero|linear|cubic", "of the noise between knots"),
-    basic(
-        number_option("noise", 0.2, 0, kMaxNoise, "standard deviation of the noise, in units of the action")),
-    number_option("noise_min", 0.02, 0, kMaxNoise, "cem: the deviation of elites counts as this at least"),
-    integer_option("elites", 8, 1, kMaxSamples, "cem: best samples that the plan is the mean of"),
-    number_option("temperature", 0.2, 1e-6, 1e6, "mppi: in standard deviations of the samples' returns"),
-    integer_option("iterations", 1, 1, 1000,
-                   "times that samples are rolled out and the plan moves, in a call"),
-    flag_option("warm_start", true, "the next plan begins at this one, shifted by a step"),
-    integer_option("replan", 1, 1, kMaxHorizon, "calls from plan to plan; between them the plan is followed"),
-    text_option("choice", "mean", "mean|best", "cem, mppi: act by the mean, or by the last iteration's best"),
-    basic(number_option("discount", 1, 0, 1, "of rewards, for each step of the pool")),
-    text_option("costs", "feasible", "feasible|multiplier|ignore",
-                "plans within the budgets first, or return less multiplier times costs, or return alone"),
-    number_option("multiplier", 1, 0, 1e9, "of each limited cost, with costs=multiplier"),
-    text_option("budget", "rest", "rest|share",
-                "what a plan may cost: all that the episode has left, or the horizon's share of it"),
-    flag_option("terminal_cost", false, "the cost critic's values count as costs to come"),
-};
+constexpr auto kRows = option_rows<PlanOptions>(
+    row<&PlanOptions::method, PlanMethod::kPredictive, PlanMethod::kCem, PlanMethod::kMppi>(text_option(
+        "method", "predictive", "predictive|cem|mppi",
+        "how the plan moves: to the best sample, the elites' mean, or a mean weighted by return")),
+    row<&PlanOptions::samples>(
+        integer_option("samples", 64, 1, kMaxSamples, "worlds that are rolled out in each iteration")),
+    row<&PlanOptions::horizon>(
+        basic(integer_option("horizon", 32, 1, kMaxHorizon, "steps of the pool that a plan looks ahead"))),
+    row<&PlanOptions::knots>(
+        integer_option("knots", 5, 1, kMaxHorizon, "values of the noise over a plan, the horizon at most")),
+    row<&PlanOptions::interpolation, Interpolation::kZero, Interpolation::kLinear, Interpolation::kCubic>(
+        text_option("interpolation", "linear", "zero|linear|cubic", "of the noise between knots")),
+    row<&PlanOptions::noise>(basic(number_option("noise", 0.2, 0, kMaxNoise,
+                                                 "standard deviation of the noise, in units of the action"))),
+    row<&PlanOptions::noise_min>(number_option("noise_min", 0.02, 0, kMaxNoise,
+                                               "cem: the deviation of elites counts as this at least")),
+    row<&PlanOptions::elites>(
+        integer_option("elites", 8, 1, kMaxSamples, "cem: best samples that the plan is the mean of")),
+    row<&PlanOptions::temperature>(
+        number_option("temperature", 0.2, 1e-6, 1e6, "mppi: in standard deviations of the samples' returns")),
+    row<&PlanOptions::iterations>(integer_option(
+        "iterations", 1, 1, 1000, "times that samples are rolled out and the plan moves, in a call")),
+    row<&PlanOptions::warm_start>(
+        flag_option("warm_start", true, "the next plan begins at this one, shifted by a step")),
+    row<&PlanOptions::replan>(integer_option("replan", 1, 1, kMaxHorizon,
+                                             "calls from plan to plan; between them the plan is followed")),
+    row<&PlanOptions::best_only, false, true>(text_option(
+        "choice", "mean", "mean|best", "cem, mppi: act by the mean, or by the last iteration's best")),
+    row<&PlanOptions::discount>(
+        basic(number_option("discount", 1, 0, 1, "of rewards, for each step of the pool"))),
+    row<&PlanOptions::costs, CostRule::kFeasible, CostRule::kMultiplier, CostRule::kIgnore>(text_option(
+        "costs", "feasible", "feasible|multiplier|ignore",
+        "plans within the budgets first, or return less multiplier times costs, or return alone")),
+    row<&PlanOptions::multiplier>(
+        number_option("multiplier", 1, 0, 1e9, "of each limited cost, with costs=multiplier")),
+    row<&PlanOptions::share, false, true>(
+        text_option("budget", "rest", "rest|share",
+                    "what a plan may cost: all that the episode has left, or the horizon's share of it")),
+    row<&PlanOptions::terminal_cost>(
+        flag_option("terminal_cost", false, "the cost critic's values count as costs to come")));
 
 size_t sz(int32_t n) {
   return static_cast<size_t>(n);
@@ -55,36 +71,22 @@ float clip_unit(float x) {
 }  // namespace
 
 const OptionSpec* planner_options(int32_t* count) {
-  *count = static_cast<int32_t>(std::size(kRows));
-  return kRows;
+  *count = static_cast<int32_t>(kRows.size());
+  return kRows.specs;
 }
 
 void Planner::read_options(const PlannerConfig& c) {
-  options_.add_table(kRows, static_cast<int32_t>(std::size(kRows)));
+  options_.add_table(kRows.specs, static_cast<int32_t>(kRows.size()));
   for (int32_t i = 0; i < c.num_options; ++i) options_.set(c.options[i], "planner");
   options_.set_lines(c.settings, "planner");
-  const auto is = [&](const char* key, const char* word) { return same_name(options_.text(key), word); };
-  method_ = is("method", "cem")    ? PlanMethod::kCem
-            : is("method", "mppi") ? PlanMethod::kMppi
-                                   : PlanMethod::kPredictive;
-  samples_ = options_.integer("samples");
-  horizon_ = options_.integer("horizon");
-  knots_ = std::min(options_.integer("knots"), horizon_);
-  elites_ = std::min(options_.integer("elites"), samples_);
-  iterations_ = options_.integer("iterations");
-  replan_ = options_.integer("replan");
-  if (replan_ > horizon_) fail(Code::kRange, "replan: %d is above the horizon, %d", replan_, horizon_);
-  temperature_ = options_.number("temperature");
-  discount_ = options_.number("discount");
-  noise_floor_ = options_.number("noise_min");
-  warm_ = options_.flag("warm_start");
-  best_only_ = method_ == PlanMethod::kPredictive || is("choice", "best");
-  share_ = is("budget", "share");
-  terminal_cost_ = options_.flag("terminal_cost");
-  rule_.rule = is("costs", "multiplier") ? CostRule::kMultiplier
-               : is("costs", "ignore")   ? CostRule::kIgnore
-                                         : CostRule::kFeasible;
-  rule_.multiplier = options_.number("multiplier");
+  settings_ = kRows.read(options_);
+  settings_.knots = std::min(settings_.knots, settings_.horizon);
+  settings_.elites = std::min(settings_.elites, settings_.samples);
+  if (settings_.replan > settings_.horizon)
+    fail(Code::kRange, "replan: %d is above the horizon, %d", settings_.replan, settings_.horizon);
+  settings_.best_only = settings_.best_only || settings_.method == PlanMethod::kPredictive;
+  rule_.rule = settings_.costs;
+  rule_.multiplier = settings_.multiplier;
 }
 
 void Planner::make_rollouts(const PlannerConfig& c) {
@@ -98,7 +100,7 @@ void Planner::make_rollouts(const PlannerConfig& c) {
   settings[length] = '\n';
   std::memcpy(settings.data() + length + 1, kBlind, sizeof kBlind);
   PoolConfig rollouts;
-  rollouts.num_envs = samples_;
+  rollouts.num_envs = settings_.samples;
   rollouts.num_threads = c.num_threads > 0 ? c.num_threads : pool.config().num_threads;
   rollouts.task = info.name;
   rollouts.autoreset = Autoreset::kOff;
@@ -115,12 +117,14 @@ void Planner::make_rollouts(const PlannerConfig& c) {
 }
 
 void Planner::carve(Arena& arena) {
-  if (int64_t{samples_} * knots_ * action_dim_ > kMaxNumbers || int64_t{horizon_} * action_dim_ > kMaxNumbers)
-    fail(Code::kRange, "samples: %d times %d knots times %d actions are above %lld", samples_, knots_,
-         action_dim_, static_cast<long long>(kMaxNumbers));
+  if (int64_t{settings_.samples} * settings_.knots * action_dim_ > kMaxNumbers ||
+      int64_t{settings_.horizon} * action_dim_ > kMaxNumbers)
+    fail(Code::kRange, "samples: %d times %d knots times %d actions are above %lld", settings_.samples,
+         settings_.knots, action_dim_, static_cast<long long>(kMaxNumbers));
   // plan [horizon][action_dim], width: knots of one sample's noise
-  const size_t n = sz(samples_), dim = sz(action_dim_), plan = sz(horizon_) * dim, width = sz(knots_) * dim;
-  rows_ = arena.make<KnotRow>(sz(horizon_));
+  const size_t n = sz(settings_.samples), dim = sz(action_dim_), plan = sz(settings_.horizon) * dim,
+               width = sz(settings_.knots) * dim;
+  rows_ = arena.make<KnotRow>(sz(settings_.horizon));
   start_ = arena.make<float>(dim);
   noise_std_ = arena.make<float>(dim);
   floor_ = arena.make<float>(width);
@@ -157,21 +161,19 @@ Planner::Planner(const PlannerConfig& c)
     arena_ = Arena(hooks_, measure.used());
     carve(arena_);
     for (int32_t j = 0; j < action_dim_; ++j) {
-      const double noise = c.noise ? static_cast<double>(c.noise[j]) : options_.number("noise");
+      const double noise = c.noise ? static_cast<double>(c.noise[j]) : settings_.noise;
       if (!(noise >= 0 && noise <= kMaxNoise))
         fail(Code::kRange, "noise: entry %d is outside [0, %g]", j, kMaxNoise);
       noise_std_[j] = static_cast<float>(noise);
-      for (int32_t k = 0; k < knots_; ++k)
-        floor_[sz(k) * sz(action_dim_) + sz(j)] = static_cast<float>(std::min(noise_floor_, noise));
+      for (int32_t k = 0; k < settings_.knots; ++k)
+        floor_[sz(k) * sz(action_dim_) + sz(j)] = static_cast<float>(std::min(settings_.noise_min, noise));
     }
   } catch (...) {
     Pool::destroy(rollouts_);
     throw;
   }
-  const auto kind = same_name(options_.text("interpolation"), "zero")    ? Interpolation::kZero
-                    : same_name(options_.text("interpolation"), "cubic") ? Interpolation::kCubic
-                                                                         : Interpolation::kLinear;
-  for (int32_t t = 0; t < horizon_; ++t) rows_[t] = knot_row(kind, knots_, horizon_, t);
+  for (int32_t t = 0; t < settings_.horizon; ++t)
+    rows_[t] = knot_row(settings_.interpolation, settings_.knots, settings_.horizon, t);
   rollouts_->task().initial_mean(start_);
   for (int32_t j = 0; j < action_dim_; ++j) start_[j] = clip_unit(start_[j]);
   forget();  // a plan is the start action until one is made
@@ -194,7 +196,8 @@ void Planner::destroy(Planner* p) {
 }
 
 void Planner::start_plan(float* plan) const {
-  for (int32_t t = 0; t < horizon_; ++t) std::copy_n(start_, action_dim_, plan + sz(t) * sz(action_dim_));
+  for (int32_t t = 0; t < settings_.horizon; ++t)
+    std::copy_n(start_, action_dim_, plan + sz(t) * sz(action_dim_));
 }
 
 void Planner::forget() {
@@ -205,7 +208,7 @@ void Planner::forget() {
 }
 
 void Planner::set_plan(const float* plan) {
-  const size_t count = sz(horizon_) * sz(action_dim_);
+  const size_t count = sz(settings_.horizon) * sz(action_dim_);
   for (size_t i = 0; i < count; ++i)
     if (!std::isfinite(plan[i])) fail(Code::kArgument, "plan: entry %zu is not finite", i);
   for (size_t i = 0; i < count; ++i) plan_[i] = clip_unit(plan[i]);
@@ -216,13 +219,13 @@ void Planner::set_plan(const float* plan) {
 // The last action stays.
 void Planner::shift_plan() {
   const size_t dim = sz(action_dim_);
-  std::memmove(plan_, plan_ + dim, (sz(horizon_) - 1) * dim * sizeof *plan_);
+  std::memmove(plan_, plan_ + dim, (sz(settings_.horizon) - 1) * dim * sizeof *plan_);
 }
 
 void Planner::set_budgets(const Pool& pool, int32_t env) {
   // share: of the budget that is left, as much as the horizon is of the steps that are left
   const double left = pool.task().max_steps() - pool.episode_step(env);
-  const double share = share_ ? std::min(1.0, horizon_ * pool.repeat() / left) : 1.0;
+  const double share = settings_.share ? std::min(1.0, settings_.horizon * pool.repeat() / left) : 1.0;
   for (int32_t k = 0; k < cost_dim_; ++k)
     rule_.budget[k] = limit_[k] < 0 ? -1 : share * std::max(limit_[k] - pool.spent(env, k), 0.0);
 }
@@ -238,10 +241,10 @@ bool Planner::propose(const Pool& pool, int32_t env) {
   const int32_t steps = std::max(1, policy_->repeat() / pool.repeat());
   // decisions fall where they would if the policy acted alone
   const int32_t phase = pool.episode_step(env) / pool.repeat();
-  std::fill_n(alive_, samples_, uint8_t{0});
+  std::fill_n(alive_, settings_.samples, uint8_t{0});
   alive_[0] = 1;
   bool whole = true;
-  for (int32_t t = 0; t < horizon_; ++t) {
+  for (int32_t t = 0; t < settings_.horizon; ++t) {
     float* action = centre_ + sz(t) * sz(action_dim_);
     const float* before = t > 0 ? action - action_dim_ : last_;
     const bool due = (phase + t) % steps == 0 || (t == 0 && !planned_);
@@ -251,7 +254,7 @@ bool Planner::propose(const Pool& pool, int32_t env) {
       policy_->act(b.obs, action);
     for (int32_t j = 0; j < action_dim_; ++j)  // a network that overflows proposes nothing
       action[j] = std::isfinite(action[j]) ? clip_unit(action[j]) : before[j];
-    if (!alive_[0] || t + 1 == horizon_) continue;
+    if (!alive_[0] || t + 1 == settings_.horizon) continue;
     if (stopped()) {
       whole = false;
       alive_[0] = 0;  // the rest is the last action
@@ -266,9 +269,9 @@ bool Planner::propose(const Pool& pool, int32_t env) {
 }
 
 void Planner::draw_noise() {
-  const int32_t width = knots_ * action_dim_;
-  stream_.normals(noise_, samples_ * width);
-  for (int32_t i = 0; i < samples_; ++i) {
+  const int32_t width = settings_.knots * action_dim_;
+  stream_.normals(noise_, settings_.samples * width);
+  for (int32_t i = 0; i < settings_.samples; ++i) {
     float* e = noise_ + sz(i) * sz(width);
     if (i == 0 || (i == 1 && foreign_))  // the centre itself, and the plan of before beside a policy's
       std::fill_n(e, width, 0.0f);
@@ -278,7 +281,7 @@ void Planner::draw_noise() {
 }
 
 const float* Planner::plan_row(int32_t step) const {
-  return plan_ + sz(std::min(step + ahead_, horizon_ - 1)) * sz(action_dim_);
+  return plan_ + sz(std::min(step + ahead_, settings_.horizon - 1)) * sz(action_dim_);
 }
 
 void Planner::sample_action(int32_t sample, int32_t step, float* action) const {
@@ -290,7 +293,7 @@ void Planner::sample_action(int32_t sample, int32_t step, float* action) const {
   const KnotRow& row = rows_[step];
   std::copy_n(centre_ + at, dim, action);
   for (int32_t k = 0; sample > 0 && k < row.count; ++k) {
-    const float* e = noise_ + (sz(sample) * sz(knots_) + sz(row.first + k)) * dim;
+    const float* e = noise_ + (sz(sample) * sz(settings_.knots) + sz(row.first + k)) * dim;
     for (size_t j = 0; j < dim; ++j) action[j] += row.weight[k] * e[j];
   }
   for (size_t j = 0; j < dim; ++j) action[j] = clip_unit(action[j]);
@@ -299,16 +302,16 @@ void Planner::sample_action(int32_t sample, int32_t step, float* action) const {
 bool Planner::roll_out(const Pool& pool, int32_t env) {
   rollouts_->copy(-1, pool, env);  // into all worlds
   const Buffers& b = rollouts_->buffers();
-  std::fill_n(alive_, samples_, uint8_t{1});
-  std::fill_n(courses_, samples_, Course{});
+  std::fill_n(alive_, settings_.samples, uint8_t{1});
+  std::fill_n(courses_, settings_.samples, Course{});
   double discount = 1;
-  int32_t alive = samples_;
-  for (int32_t t = 0; t < horizon_ && alive > 0; ++t, discount *= discount_) {
+  int32_t alive = settings_.samples;
+  for (int32_t t = 0; t < settings_.horizon && alive > 0; ++t, discount *= settings_.discount) {
     if (stopped()) return false;
-    for (int32_t i = 0; i < samples_; ++i)
+    for (int32_t i = 0; i < settings_.samples; ++i)
       if (alive_[i]) sample_action(i, t, b.action + sz(i) * sz(action_dim_));
     rollouts_->step(alive_);
-    for (int32_t i = 0; i < samples_; ++i) {
+    for (int32_t i = 0; i < settings_.samples; ++i) {
       if (!alive_[i]) continue;
       Course& c = courses_[i];
       steps_ += rollouts_->taken(i);
@@ -327,34 +330,34 @@ bool Planner::roll_out(const Pool& pool, int32_t env) {
 }
 
 void Planner::add_terminal(double discount) {
-  critic_->values(rollouts_->buffers().obs, samples_, value_, cost_value_);
+  critic_->values(rollouts_->buffers().obs, settings_.samples, value_, cost_value_);
   const int32_t costs = critic_->num_costs();
-  for (int32_t i = 0; i < samples_; ++i) {
+  for (int32_t i = 0; i < settings_.samples; ++i) {
     if (!alive_[i]) continue;
     courses_[i].ret += discount * static_cast<double>(value_[i]);
-    for (int32_t k = 0; terminal_cost_ && k < costs; ++k)
+    for (int32_t k = 0; settings_.terminal_cost && k < costs; ++k)
       courses_[i].cost[critic_->column(k)] +=
           std::max(0.0, static_cast<double>(cost_value_[sz(i) * sz(costs) + sz(k)]));
   }
 }
 
 void Planner::move_centre() {
-  for (int32_t i = 0; i < samples_; ++i) standings_[i] = standing(courses_[i], rule_);
-  rank_courses(standings_, samples_, order_);
+  for (int32_t i = 0; i < settings_.samples; ++i) standings_[i] = standing(courses_[i], rule_);
+  rank_courses(standings_, settings_.samples, order_);
   // The new centre is a weighted mean of samples: of the best alone, of all by e^(return / temperature), or
   // of the elites alike.
-  std::fill_n(weights_, samples_, 0.0);
-  if (best_only_)
+  std::fill_n(weights_, settings_.samples, 0.0);
+  if (settings_.best_only)
     weights_[order_[0]] = 1;
-  else if (method_ == PlanMethod::kMppi)
-    path_integral_weights(standings_, samples_, temperature_, weights_);
+  else if (settings_.method == PlanMethod::kMppi)
+    path_integral_weights(standings_, settings_.samples, settings_.temperature, weights_);
   else
-    for (int32_t e = 0; e < elites_; ++e) weights_[order_[e]] = 1.0 / elites_;
-  if (method_ == PlanMethod::kCem)
-    elite_deviation(noise_, order_, elites_, knots_ * action_dim_, floor_, sigma_);
-  for (int32_t t = 0; t < horizon_; ++t) {
+    for (int32_t e = 0; e < settings_.elites; ++e) weights_[order_[e]] = 1.0 / settings_.elites;
+  if (settings_.method == PlanMethod::kCem)
+    elite_deviation(noise_, order_, settings_.elites, settings_.knots * action_dim_, floor_, sigma_);
+  for (int32_t t = 0; t < settings_.horizon; ++t) {
     std::fill_n(sum_, action_dim_, 0.0);
-    for (int32_t i = 0; i < samples_; ++i) {
+    for (int32_t i = 0; i < settings_.samples; ++i) {
       if (weights_[i] == 0) continue;
       sample_action(i, t, row_);
       for (int32_t j = 0; j < action_dim_; ++j) sum_[j] += weights_[i] * static_cast<double>(row_[j]);
@@ -369,8 +372,8 @@ void Planner::describe_iteration(PlanInfo* out) const {
   out->best_sample = order_[0];
   out->best = courses_[order_[0]];
   int32_t feasible = 0;
-  for (int32_t i = 0; i < samples_; ++i) feasible += !courses_[i].lost && within(courses_[i], rule_);
-  out->feasible_share = static_cast<double>(feasible) / samples_;
+  for (int32_t i = 0; i < settings_.samples; ++i) feasible += !courses_[i].lost && within(courses_[i], rule_);
+  out->feasible_share = static_cast<double>(feasible) / settings_.samples;
 }
 
 void Planner::make_plan(const Pool& pool, int32_t env, PlanInfo* out) {
@@ -378,18 +381,19 @@ void Planner::make_plan(const Pool& pool, int32_t env, PlanInfo* out) {
   steps_ = 0;
   ahead_ = given_ ? 1 : 0;  // the old plan's first action has been taken
   set_budgets(pool, env);
-  for (int32_t k = 0; k < knots_; ++k) std::copy_n(noise_std_, action_dim_, sigma_ + sz(k) * sz(action_dim_));
-  foreign_ = policy_ && planned_ && warm_;
+  for (int32_t k = 0; k < settings_.knots; ++k)
+    std::copy_n(noise_std_, action_dim_, sigma_ + sz(k) * sz(action_dim_));
+  foreign_ = policy_ && planned_ && settings_.warm_start;
   const Stream first = stream_;
   try {
     if (policy_)
       out->cut = !propose(pool, env);
-    else if (!warm_)
+    else if (!settings_.warm_start)
       start_plan(centre_);
     else
-      for (int32_t t = 0; t < horizon_; ++t)
+      for (int32_t t = 0; t < settings_.horizon; ++t)
         std::copy_n(plan_row(t), action_dim_, centre_ + sz(t) * sz(action_dim_));
-    while (!out->cut && out->iterations < iterations_) {
+    while (!out->cut && out->iterations < settings_.iterations) {
       const Stream before = stream_;
       draw_noise();
       if (!roll_out(pool, env)) {
@@ -414,15 +418,15 @@ void Planner::act(const Pool& pool, int32_t env, float* action, PlanInfo* info) 
   rollouts_->need_same(pool, "pool", "the planner");
   if (!pool.running(env)) fail(Code::kState, "act: no episode runs in world %d; reset it first", env);
   cancel_.check();
-  const bool follow = planned_ && given_ && since_ + 1 < replan_;
+  const bool follow = planned_ && given_ && since_ + 1 < settings_.replan;
   PlanInfo out;
   if (!follow) make_plan(pool, env, &out);
   if (out.iterations > 0 || !planned_)
-    std::copy_n(centre_, sz(horizon_) * sz(action_dim_), plan_);
+    std::copy_n(centre_, sz(settings_.horizon) * sz(action_dim_), plan_);
   else if (given_)
     shift_plan();
   // a plan that was not made is made in the next call
-  since_ = out.iterations > 0 ? 0 : follow ? since_ + 1 : replan_ - 1;
+  since_ = out.iterations > 0 ? 0 : follow ? since_ + 1 : settings_.replan - 1;
   planned_ = given_ = true;
   std::copy_n(plan_, action_dim_, last_);
   std::copy_n(plan_, action_dim_, action);
@@ -453,7 +457,7 @@ void Planner::write_state(Writer& out) const {
   out.value(static_cast<uint8_t>(given_));
   out.value(since_);
   out.bytes(last_, dim * sizeof *last_);
-  out.bytes(plan_, sz(horizon_) * dim * sizeof *plan_);
+  out.bytes(plan_, sz(settings_.horizon) * dim * sizeof *plan_);
   out.end_section();
   out.end_file();
 }
@@ -471,13 +475,13 @@ void Planner::read_state(const void* bytes, size_t size) {
   const auto stream = in.value<Stream>();
   const auto planned = in.value<uint8_t>(), given = in.value<uint8_t>();
   const auto since = in.value<int32_t>();
-  bool good = planned <= 1 && given <= planned && since >= 0 && since < replan_;
+  bool good = planned <= 1 && given <= planned && since >= 0 && since < settings_.replan;
   Reader rows = in;
-  for (size_t i = 0; i < (1 + sz(horizon_)) * dim; ++i) good &= std::abs(rows.value<float>()) <= 1;
+  for (size_t i = 0; i < (1 + sz(settings_.horizon)) * dim; ++i) good &= std::abs(rows.value<float>()) <= 1;
   rows.expect_end();
   if (!good) fail(Code::kFormat, "planner state: a number is out of range");
   in.bytes(last_, dim * sizeof *last_);
-  in.bytes(plan_, sz(horizon_) * dim * sizeof *plan_);
+  in.bytes(plan_, sz(settings_.horizon) * dim * sizeof *plan_);
   stream_ = stream;
   planned_ = planned != 0;
   given_ = given != 0;

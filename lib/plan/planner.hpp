@@ -24,6 +24,23 @@ namespace rdm {
 enum class PlanMethod : int32_t { kPredictive = 0, kCem = 1, kMppi = 2 };
 
 const OptionSpec* planner_options(int32_t* count);
+struct PlanOptions {
+  PlanMethod method;
+  int32_t samples, horizon, knots;  // worlds, steps of the pool, of the noise over a plan
+  Interpolation interpolation;
+  double noise, noise_min;  // deviations, in units of the action
+  int32_t elites;
+  double temperature;
+  int32_t iterations;
+  bool warm_start;
+  int32_t replan;  // calls
+  bool best_only;  // choice
+  double discount;
+  CostRule costs;
+  double multiplier;
+  bool share;  // budget
+  bool terminal_cost;
+};
 
 // Who proposes actions, one row at a time, and how good a state is; each a view of what somebody else owns.
 class PlanPolicy {
@@ -85,9 +102,9 @@ class Planner {
   const float* plan() const { return plan_; }
   void set_plan(const float* plan);
 
-  int32_t horizon() const { return horizon_; }
-  int32_t samples() const { return samples_; }
-  int32_t knots() const { return knots_; }
+  int32_t horizon() const { return settings_.horizon; }
+  int32_t samples() const { return settings_.samples; }
+  int32_t knots() const { return settings_.knots; }
   int32_t action_dim() const { return action_dim_; }
   int32_t cost_dim() const { return cost_dim_; }
   const Options& options() const { return options_; }
@@ -122,11 +139,8 @@ class Planner {
 
   HostHooks hooks_;
   Options options_;
-  PlanMethod method_ = PlanMethod::kPredictive;
+  PlanOptions settings_;  // what options_ say, within each other's bounds
   CourseRule rule_;
-  bool share_ = false, warm_ = true, best_only_ = false, terminal_cost_ = false;
-  int32_t samples_ = 0, horizon_ = 0, knots_ = 0, elites_ = 0, iterations_ = 1, replan_ = 1;
-  double temperature_ = 1, discount_ = 1, noise_floor_ = 0;
   double limit_[kMaxTaskCosts] = {};  // of an episode, < 0: none
   PlanPolicy* policy_ = nullptr;
   PlanCritic* critic_ = nullptr;
