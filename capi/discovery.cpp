@@ -221,27 +221,6 @@ rdm_result rdm_robot_at(int32_t index, rdm_robot* io) {
     write_struct(io, o, sizeof(rdm_robot), "io");
   });
 }
-
-rdm_result rdm_robot_joint(int32_t robot_index, int32_t i, rdm_joint* out) {
-  return call([&] {
-    need(out, "out");
-    const RobotRef ref(robot_index);
-    const Robot& r = *ref;
-    need_index(i, r.links.count, "i");
-    const RobotLink& l = r.links[i];
-    rdm_joint o{};
-    o.name = lasting(l.joint);
-    o.lower = l.lower;
-    o.upper = l.upper;
-    o.kp = r.coupled(i) ? 0 : l.kp;
-    o.kd = l.kd;
-    o.effort = l.effort;
-    o.action = -1;
-    for (int32_t k = 0; k < r.num_actuated(); ++k)
-      if (r.actuated(k) == i) o.action = k;
-    *out = o;
-  });
-}
 #endif
 
 #if RDM_WITH_LEARN

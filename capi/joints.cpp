@@ -1,7 +1,6 @@
 // The joints of robots and of a pool's worlds: what they are, where they are, and where they are put.
-#include <limits>
-
 #include "capi/handles.hpp"
+#include "capi/joint.hpp"
 
 #if RDM_WITH_SIM
 #include "base/lasting.hpp"
@@ -13,20 +12,6 @@ using namespace rdm::capi;
 static_assert(static_cast<int>(RDM_JOINT_PRISMATIC) == static_cast<int>(JointKind::kPrismatic));
 
 namespace {
-
-// Of a row of a robot's table, or a joint of a scene: their members have the same names.
-template <class Joint>
-rdm_joint_info info_of(const Joint& j, bool coupled) {
-  rdm_joint_info o{};
-  o.kind = static_cast<int32_t>(j.kind);
-  o.lower = j.lower;
-  o.upper = j.upper;
-  o.velocity = j.velocity > 0 ? j.velocity : std::numeric_limits<double>::quiet_NaN();
-  o.kp = coupled ? 0 : j.kp;
-  o.kd = j.kd;
-  o.effort = j.effort;
-  return o;
-}
 
 int32_t joints_of(const rdm_pool* p, int32_t env, size_t count) {
   need_index(env, p->pool->config().num_envs, "env");
@@ -44,7 +29,7 @@ rdm_result rdm_robot_joint_at(int32_t robot, int32_t i, rdm_joint_info* io) {
     const Robot& r = *ref;
     need_index(i, r.links.count, "i");
     const RobotLink& l = r.links[i];
-    rdm_joint_info o = info_of(l, r.coupled(i));
+    rdm_joint_info o = joint_info(l, r.coupled(i));
     o.name = lasting(l.joint);
     o.parent = l.parent;
     o.action = r.action_of(i);
@@ -58,7 +43,7 @@ rdm_result rdm_pool_joint_at(const rdm_pool* p, int32_t i, rdm_joint_info* io) {
     const Scene& scene = task.scene();
     need_index(i, scene.num_links, "i");
     const JointDef& j = scene.link(i).joint;
-    rdm_joint_info o = info_of(j, j.coupled_to >= 0);
+    rdm_joint_info o = joint_info(j, j.coupled_to >= 0);
     o.name = j.name.text;
     o.parent = scene.frames[static_cast<size_t>(i)].parent;
     o.action = task.action_of(i);

@@ -4,6 +4,7 @@
 
 #include "base/names.hpp"
 #include "base/text.hpp"
+#include "capi/joint.hpp"
 #include "capi/own_task.hpp"
 #include "capi/pose.hpp"
 
@@ -570,27 +571,22 @@ rdm_result rdm_scene_find(rdm_scene* scene, int32_t part, const char* name, int3
   });
 }
 
-rdm_result rdm_scene_joint_at(rdm_scene* scene, int32_t i, rdm_joint* out) {
+rdm_result rdm_scene_joint_at(rdm_scene* scene, int32_t i, rdm_joint_info* io) {
   return call_inside([&] {
     need_handle(scene);
-    need(out, "out");
     complete_scene(scene);
     const Scene& s = scene->scene;
     need_index(i, s.num_links, "i");
     const JointDef& j = s.link(i).joint;
-    rdm_joint o{};
+    rdm_joint_info o = joint_info(j, j.coupled_to >= 0);
     o.name = j.name.text;
-    o.lower = j.lower;
-    o.upper = j.upper;
-    o.kp = j.coupled_to >= 0 ? 0 : j.kp;
-    o.kd = j.kd;
-    o.effort = j.effort;
+    o.parent = s.frames[static_cast<size_t>(i)].parent;
     o.action = -1;
     const auto a = static_cast<size_t>(s.link_articulation[static_cast<size_t>(i)]);
     const auto& commands = scene->robots[a].commands;
     for (size_t k = 0; k < commands.size(); ++k)
       if (commands[k].joint == i) o.action = static_cast<int32_t>(k);
-    *out = o;
+    write_struct(io, o, sizeof(rdm_joint_info), "io");
   });
 }
 

@@ -85,7 +85,7 @@ void PlayerText::add_player(size_t index) {
   read_joints(part, "rest", rest.data());
   for (int32_t i = 0; i < joints; ++i) {
     const int32_t j = player.joint + i;
-    rdm_joint info;
+    rdm_joint_info info = RDM_INIT(rdm_joint_info);
     check(t, line_of(t.t), rdm_scene_joint_at(scene_, j, &info));
     p_.rest[j] = rest[static_cast<size_t>(i)].low;
     const double beyond = 0.1 * (info.upper - info.lower);  // against a stop
@@ -137,7 +137,7 @@ void PlayerText::controls(const Part& part, bool robot, Player* player) {
   if (t.find("drive")) drive = texts(t, "drive", 1, kMostTaskJoints);
   for (int32_t i = 0; i < player->joints; ++i) {
     const int32_t j = player->joint + i;
-    rdm_joint info;
+    rdm_joint_info info = RDM_INIT(rdm_joint_info);
     check(t, line_of(t.t), rdm_scene_joint_at(scene_, j, &info));
     if (info.action < 0) continue;
     if (player->command + info.action >= kMostTaskActions)

@@ -36,7 +36,7 @@ void SceneText::read_scene() {
   const auto draws = top_.rows("draw");
   if (!draws.empty()) check(draws[0], line_of(draws[0].t), rdm_scene_set_adjustable(scene_));
   if (!joint_names_.empty()) {  // the first look at the whole scene: what is wrong then is no robot's fault
-    rdm_joint first;
+    rdm_joint_info first = RDM_INIT(rdm_joint_info);
     if (const rdm_result r = rdm_scene_joint_at(scene_, 0, &first)) refuse(r, "%s", rdm_last_error());
   }
 }

@@ -42,7 +42,7 @@ void TermText::listed_joints(const Table& t, Term* out) {
 }
 
 void TermText::list_joint(const Table& t, int32_t j) {
-  rdm_joint info;
+  rdm_joint_info info = RDM_INIT(rdm_joint_info);
   check(t, line_of(t.t), rdm_scene_joint_at(scene_, j, &info));
   *take(t, p_.joints, &p_.num_joints, kMostListed, "joints in terms") = {info.lower, info.upper, info.effort,
                                                                          0,          j,          0};

@@ -39,6 +39,15 @@ typedef struct rdm_camera { /* frozen layout */
   int32_t mount;            /* 0: the world's frame; k > 0: of link k - 1 of the scene; -k: of
                              * the base of its articulation k - 1 (cameras that ride on a robot) */
 } rdm_camera;
+typedef struct rdm_joint {  /* frozen layout */
+  const char *name;         /* "FFJ2"                                                         */
+  double lower, upper;      /* rad                                                            */
+  double kp;                /* N m/rad, 0: coupled                                            */
+  double kd;                /* N m s/rad                                                      */
+  double effort;            /* N m                                                            */
+  int32_t action;           /* entry of the hand's action, -1: none                           */
+  int32_t reserved;         /* 0                                                              */
+} rdm_joint;
 typedef struct rdm_shape {   /* frozen layout: what the scene is made of, the same for all worlds */
   const char *name;          /* "right.ff_distal" */
   float size[3];             /* m: radius | radius, half length along z | half sizes (hull: of
@@ -175,6 +184,23 @@ rdm_result rdm_task_camera(int32_t task, int32_t i, rdm_camera *out) {
     }
     out->fov_y = info.fov_y;
     out->mount = info.mount;
+  }
+  return r;
+}
+
+static inline RDM_DEPRECATED("rdm_robot_joint_at")
+rdm_result rdm_robot_joint(int32_t robot, int32_t i, rdm_joint *out) {
+  rdm_joint_info info = RDM_INIT(rdm_joint_info);
+  const rdm_result r = rdm_robot_joint_at(robot, i, out ? &info : NULL);
+  if (r == RDM_OK) {
+    out->name = info.name;
+    out->lower = info.lower;
+    out->upper = info.upper;
+    out->kp = info.kp;
+    out->kd = info.kd;
+    out->effort = info.effort;
+    out->action = info.action;
+    out->reserved = 0;
   }
   return r;
 }
@@ -523,7 +549,19 @@ rdm_result rdm_scene_set_contact(rdm_scene *scene, const char *a, const char *b,
 
 static inline RDM_DEPRECATED("rdm_scene_joint_at")
 rdm_result rdm_scene_joint(rdm_scene *scene, int32_t i, rdm_joint *out) {
-  return rdm_scene_joint_at(scene, i, out);
+  rdm_joint_info info = RDM_INIT(rdm_joint_info);
+  const rdm_result r = rdm_scene_joint_at(scene, i, out ? &info : NULL);
+  if (r == RDM_OK) {
+    out->name = info.name;
+    out->lower = info.lower;
+    out->upper = info.upper;
+    out->kp = info.kp;
+    out->kd = info.kd;
+    out->effort = info.effort;
+    out->action = info.action;
+    out->reserved = 0;
+  }
+  return r;
 }
 
 static inline RDM_DEPRECATED("rdm_scene_add_touch")

@@ -69,27 +69,17 @@ typedef struct rdm_robot { /* a robot description */
   const char *name;         /* "shadow_hand"                                                  */
   const char *summary;      /* one line                                                       */
 } rdm_robot;
-typedef struct rdm_joint {  /* frozen layout */
-  const char *name;         /* "FFJ2"                                                         */
-  double lower, upper;      /* rad                                                            */
-  double kp;                /* N m/rad, 0: coupled                                            */
-  double kd;                /* N m s/rad                                                      */
-  double effort;            /* N m                                                            */
-  int32_t action;           /* entry of the hand's action, -1: none                           */
-  int32_t reserved;         /* 0                                                              */
-} rdm_joint;
 RDM_API int32_t rdm_robot_count(void); /* as rdm_task_count */
 RDM_API rdm_result rdm_robot_at(int32_t index, rdm_robot *io); /* errors as rdm_task_at */
 RDM_API rdm_result rdm_robot_find(const char *name, int32_t *index); /* name or alias; NOT_FOUND:
                                                                       * nearest in the text */
-RDM_API rdm_result rdm_robot_joint(int32_t robot, int32_t i, rdm_joint *out);  /* i < num_joints */
 enum rdm_joint_kind { RDM_JOINT_REVOLUTE = 0, RDM_JOINT_PRISMATIC = 1 };  /* of a joint */
-typedef struct rdm_joint_info { /* a joint of a robot, or of a pool's worlds */
+typedef struct rdm_joint_info { /* a joint of a robot, a scene or a pool's worlds */
   uint32_t struct_size;     /* in: bytes                                                      */
   int32_t kind;             /* RDM_JOINT_*: revolute joints in rad and N m, prismatic in m and N */
   int32_t parent;           /* the joint before it on the way from the base, -1: none         */
-  int32_t action;           /* entry of the action (of a robot: its command) that is its own; -1:
-                             * none, or only the functions of a host's task know              */
+  int32_t action;           /* entry of the action (of a robot, in a scene too: its command) that
+                             * is its own; -1: none, or only the functions of a host's task know */
   const char *name;         /* "FFJ2"; of a pool "right_FFJ2"                                 */
   double lower, upper;      /* range, rad (m)                                                 */
   double velocity;          /* how fast its drive's target may move, rad/s (m/s); NaN: not known */

@@ -162,7 +162,7 @@ RDM_API rdm_result rdm_scene_set_actions(rdm_scene *scene, size_t count, const f
 RDM_API rdm_result rdm_scene_find(rdm_scene *scene, int32_t part, const char *name,
                                   int32_t *index); /* NOT_FOUND: nearest */
 RDM_API rdm_result rdm_scene_joint_at(rdm_scene *scene, int32_t i,
-                                      rdm_joint *out); /* action: its robot's command, -1 */
+                                      rdm_joint_info *io); /* of all robots, robot by robot */
 /* *group, for rdm_world_get_touch: all contacts of a shape of `a` with one of `b`, each the name of
  * a shape, body or robot, or a pattern of such names with '*' and '?'. NOT_FOUND where nothing has
  * it. */

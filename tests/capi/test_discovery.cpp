@@ -234,9 +234,9 @@ TEST(Discovery, RobotsAndObjects) {
     ASSERT_EQ(rdm_robot_at(r, &robot), RDM_OK);
     SCOPED_TRACE(robot.name);
     std::set<int32_t> actions;
-    rdm_joint joint;
+    rdm_joint_info joint = RDM_INIT(rdm_joint_info);
     for (int32_t i = 0; i < robot.num_joints; ++i) {
-      ASSERT_EQ(rdm_robot_joint(r, i, &joint), RDM_OK);
+      ASSERT_EQ(rdm_robot_joint_at(r, i, &joint), RDM_OK);
       EXPECT_LT(joint.lower, joint.upper) << joint.name;
       EXPECT_GT(joint.effort, 0) << joint.name;
       EXPECT_TRUE(joint.action < 0 || joint.kp > 0) << joint.name;
@@ -246,7 +246,7 @@ TEST(Discovery, RobotsAndObjects) {
     if (actions.empty()) continue;  // a drawer, a door
     EXPECT_EQ(*actions.begin(), 0);
     EXPECT_EQ(*actions.rbegin(), robot.num_actuated - 1);
-    EXPECT_EQ(rdm_robot_joint(r, robot.num_joints, &joint), RDM_ERROR_RANGE);
+    EXPECT_EQ(rdm_robot_joint_at(r, robot.num_joints, &joint), RDM_ERROR_RANGE);
   }
   rdm_object object;
   ASSERT_GT(rdm_object_count(), 0);

@@ -310,32 +310,71 @@ TEST(CoupledJoints, FollowTheJointThatLeadsThem) {
   }
 }
 
-TEST(RobotJoints, AreThoseOfTheFrozenStruct) {
+TEST(RobotJoints, AreThoseOfTheDescription) {
   for (int32_t r = 0; r < rdm_robot_count(); ++r) {
     rdm_robot robot{};
     robot.struct_size = sizeof robot;
     if (rdm_robot_at(r, &robot) != RDM_OK) continue;
-    rdm_joint_info j{};
-    j.struct_size = sizeof j;
+    rdm_joint_info j = RDM_INIT(rdm_joint_info);
     for (int32_t i = 0; i < robot.num_joints; ++i) {
-      rdm_joint old;
-      ASSERT_EQ(rdm_robot_joint(r, i, &old), RDM_OK);
       ASSERT_EQ(rdm_robot_joint_at(r, i, &j), RDM_OK) << rdm_last_error();
-      EXPECT_STREQ(j.name, old.name);
-      EXPECT_EQ(j.lower, old.lower);
-      EXPECT_EQ(j.upper, old.upper);
-      EXPECT_EQ(j.kp, old.kp);
-      EXPECT_EQ(j.kd, old.kd);
-      EXPECT_EQ(j.effort, old.effort);
-      EXPECT_EQ(j.action, old.action) << robot.name << ' ' << j.name;
       rdm_robot_link link;
       ASSERT_EQ(rdm_robot_link_at(r, i, &link), RDM_OK);
+      EXPECT_STREQ(j.name, link.joint);
+      EXPECT_EQ(j.lower, link.lower);
+      EXPECT_EQ(j.upper, link.upper);
+      EXPECT_EQ(j.kd, link.kd);
+      EXPECT_EQ(j.effort, link.effort);
       EXPECT_EQ(j.kind, link.kind);
       EXPECT_EQ(j.parent, link.parent);
       EXPECT_TRUE(link.velocity > 0 ? j.velocity == link.velocity : std::isnan(j.velocity));
     }
     EXPECT_EQ(rdm_robot_joint_at(r, robot.num_joints, &j), RDM_ERROR_RANGE);
   }
+}
+
+// Of two robots, row after row: what the robot says of each, and parents among the scene's rows.
+TEST(SceneJoints, AreThoseOfItsRobots) {
+  rdm::test::CalledTask task("joints_of_scene");
+  int32_t built = 0;
+  task.build = [&](rdm_scene* scene) {
+    std::vector<std::pair<std::string, rdm_joint_info>> wanted;
+    for (const char* name : {"shadow_hand", "ur5e"}) {
+      rdm_scene_robot row;
+      rdm_scene_robot_init(&row, sizeof row);
+      row.name = name, row.pose.p[0] = 2.0 * static_cast<double>(wanted.size());
+      if (const rdm_result r = rdm_robot_find(name, &row.robot)) return r;
+      if (const rdm_result r = rdm_scene_add_robot(scene, &row, nullptr)) return r;
+      const auto first = static_cast<int32_t>(wanted.size());
+      rdm_joint_info j = RDM_INIT(rdm_joint_info);
+      for (int32_t i = 0; rdm_robot_joint_at(row.robot, i, &j) == RDM_OK; ++i) {
+        if (j.parent >= 0) j.parent += first;
+        wanted.emplace_back(std::string(name) + '_' + j.name, j);
+      }
+    }
+    EXPECT_EQ(wanted.size(), 30u);
+    rdm_joint_info j = RDM_INIT(rdm_joint_info);
+    int32_t i = 0;
+    for (const auto& [name, w] : wanted) {
+      if (const rdm_result r = rdm_scene_joint_at(scene, i++, &j)) return r;
+      EXPECT_EQ(j.name, name);
+      EXPECT_EQ(j.kind, w.kind) << name;
+      EXPECT_EQ(j.parent, w.parent) << name;
+      EXPECT_EQ(j.action, w.action) << name;
+      EXPECT_EQ(j.lower, w.lower) << name;
+      EXPECT_EQ(j.upper, w.upper) << name;
+      EXPECT_TRUE(j.velocity == w.velocity || (std::isnan(j.velocity) && std::isnan(w.velocity))) << name;
+      EXPECT_EQ(j.kp, w.kp) << name;
+    }
+    EXPECT_EQ(rdm_scene_joint_at(scene, i, &j), RDM_ERROR_RANGE);
+    EXPECT_EQ(rdm_scene_joint_at(scene, 0, nullptr), RDM_ERROR_ARGUMENT);
+    ++built;
+    return rdm_result{RDM_OK};
+  };
+  rdm_pool_config c = pool_config(1);
+  c.task = "joints_of_scene";
+  rdm_pool_destroy(make_pool(c));
+  EXPECT_GT(built, 0);
 }
 
 // A function of a host's own that fails, when it is asked for the new row.

@@ -142,5 +142,26 @@ TEST(OldRows, OfAPool) {
   rdm_pool_destroy(p);
 }
 
+TEST(OldRows, OfJoints) {
+  int32_t robot = -1, i = 0;
+  ASSERT_EQ(rdm_robot_find("shadow_hand", &robot), RDM_OK);
+  rdm_joint_info joint = RDM_INIT(rdm_joint_info);
+  rdm_joint old;
+  for (; rdm_robot_joint_at(robot, i, &joint) == RDM_OK; ++i) {
+    ASSERT_EQ(rdm_robot_joint(robot, i, &old), RDM_OK);
+    EXPECT_STREQ(old.name, joint.name);
+    EXPECT_EQ(old.lower, joint.lower);
+    EXPECT_EQ(old.upper, joint.upper);
+    EXPECT_EQ(old.kp, joint.kp);
+    EXPECT_EQ(old.kd, joint.kd);
+    EXPECT_EQ(old.effort, joint.effort);
+    EXPECT_EQ(old.action, joint.action);
+    EXPECT_EQ(old.reserved, 0);
+  }
+  EXPECT_EQ(i, 24);
+  EXPECT_EQ(rdm_robot_joint(robot, i, &old), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_robot_joint(robot, 0, nullptr), RDM_ERROR_ARGUMENT);
+}
+
 }  // namespace
 #pragma GCC diagnostic pop

@@ -315,8 +315,8 @@ TEST(Robots, MayTakeNoCommands) {
   ASSERT_EQ(rdm_robot_at(made, &robot), RDM_OK);
   EXPECT_EQ(robot.num_actuated, 0);
   EXPECT_EQ(robot.num_joints, 2);
-  rdm_joint joint;
-  ASSERT_EQ(rdm_robot_joint(made, 1, &joint), RDM_OK);
+  rdm_joint_info joint = RDM_INIT(rdm_joint_info);
+  ASSERT_EQ(rdm_robot_joint_at(made, 1, &joint), RDM_OK);
   EXPECT_EQ(joint.action, -1);
   EXPECT_GT(joint.kp, 0);  // its spring
   int32_t robot_index = -1;

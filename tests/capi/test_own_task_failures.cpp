@@ -310,7 +310,7 @@ TEST(OwnTaskBuilds, AFailedOneStaysFailed) {
     rdm_body_def ball{};
     ball.struct_size = sizeof ball, ball.name = "other", ball.shapes = &sphere, ball.num_shapes = 1;
     ball.mass = 0.1, ball.pose.p[2] = 2;
-    rdm_joint joint;
+    rdm_joint_info joint = RDM_INIT(rdm_joint_info);
     const double p[3] = {};
     const rdm_pose pose{};
     later = {rdm_scene_add_body(scene, &ball, nullptr),

@@ -180,7 +180,7 @@ TEST(Registries, ANumberThatWasKeptTooLongIsRefusedEverywhere) {
   rdm_pose poses[64];
   int32_t found = 0, made = 0;
   rdm_robot r{sizeof r, 0, 0, 0, nullptr, nullptr};
-  rdm_joint joint;
+  rdm_joint_info joint = RDM_INIT(rdm_joint_info);
   rdm_robot_def rd;
   ASSERT_EQ(rdm_robot_def_init(&rd, sizeof rd), RDM_OK);
   rdm_robot_link link;
@@ -190,7 +190,7 @@ TEST(Registries, ANumberThatWasKeptTooLongIsRefusedEverywhere) {
   rdm_robot_curve curve;
   rdm_robot_finger finger;
   refused(gone[0], rdm_robot_at(robot, &r));
-  refused(gone[0], rdm_robot_joint(robot, 0, &joint));
+  refused(gone[0], rdm_robot_joint_at(robot, 0, &joint));
   refused(gone[0], rdm_robot_get_def(robot, &rd));
   refused(gone[0], rdm_robot_link_at(robot, 0, &link));
   refused(gone[0], rdm_robot_shape_at(robot, 0, &shape));

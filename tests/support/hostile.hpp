@@ -156,8 +156,8 @@ class Trial {
       if (name == "object.rotation") rotation_ = f.offset;
       if (name.ends_with("joint_position"))
         for (int32_t k = 0; k < f.count; ++k) {
-          rdm_joint joint;
-          rdm_robot_joint(0, k, &joint);
+          rdm_joint_info joint = RDM_INIT(rdm_joint_info);
+          rdm_robot_joint_at(0, k, &joint);
           joints_.push_back(f.offset + k);
           halves_.push_back((joint.upper - joint.lower) / 2);
         }

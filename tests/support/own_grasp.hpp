@@ -81,7 +81,7 @@ inline rdm_result grasp_build(void*, rdm_scene* scene, void* instance) {
     ids->leader[c.link] = c.other, ids->ratio[c.link] = c.ratio;
   }
   for (int32_t i = 0; i < ids->joints; ++i) {
-    rdm_joint joint;
+    rdm_joint_info joint = RDM_INIT(rdm_joint_info);
     OWN_TRY(rdm_scene_joint_at(scene, i, &joint));
     ids->lower[i] = joint.lower, ids->upper[i] = joint.upper;
     if (joint.action >= 0 && joint.effort > 0) ids->effort[i] = joint.effort;

@@ -12,14 +12,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ._abi import (Autoreset, BaselineKind, Build, Joint, JointInfo, JointKind, MapInfo, Object, OptionKind, OptionLevel,
-                   PolicyInfo, PoolStats, RayHit, ResultCode, ShapeKind, Spec, Status)
+from ._abi import (Autoreset, BaselineKind, Build, JointKind, MapInfo, Object, OptionKind, OptionLevel, PolicyInfo,
+                   PoolStats, RayHit, ResultCode, ShapeKind, Spec, Status)
 from ._actor import Actor
 from ._agent import Agent, CostLimits, Epoch
 from ._callbacks import c_function
 from ._curve import Curve, Curves, curve
-from ._discovery import (Algo, Camera, Cost, Field, Option, Robot, Shape, Task, algo, algos, build, objects, robots,
-                         task, tasks)
+from ._discovery import (Algo, Camera, Cost, Field, Joint, Option, Robot, Shape, Task, algo, algos, build, objects,
+                         robots, task, tasks)
 from ._error import (AllocationError, ArgumentError, CancelledError, Error, FileError, FormatError, InternalError,
                      MissingFileError, NotFoundError, PhysicsError, RangeError, StateError, UnsupportedError, UsageError,
                      VersionError)
@@ -37,7 +37,7 @@ __version__ = version = build().version
 __all__ = [
     "Actor", "Agent", "Algo", "AllocationError", "ArgumentError", "Autoreset", "BaselineKind", "Build", "Callback", "Camera",
     "CancelledError", "Cost", "CostLimits", "Curve", "Curves", "Epoch", "Error", "Evaluation", "Field", "FileError",
-    "FormatError", "HoldWarning", "InternalError", "Joint", "JointInfo", "JointKind", "Map", "MapInfo", "MissingFileError",
+    "FormatError", "HoldWarning", "InternalError", "Joint", "JointKind", "Map", "MapInfo", "MissingFileError",
     "NotFoundError", "Object", "Option", "OptionKind", "OptionLevel", "Options", "Origin", "PhysicsError", "Player", "Policy", "PolicyInfo",
     "Pool", "PoolStats", "RangeError", "RayHit", "ResultCode", "Robot", "Run", "Sensors", "Shape", "ShapeKind", "Spec", "StateError", "Status", "Task",
     "UnsupportedError", "UsageError", "VersionError", "__version__", "algo", "algos", "build", "c_function", "curve",

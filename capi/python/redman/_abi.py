@@ -814,55 +814,12 @@ class rdm_robot(Structure):
     ]
 
 
-class Joint(Record):
-    """The values of rdm_joint."""
-
-    name: str  # "FFJ2"
-    lower: float  # rad
-    upper: float  # rad
-    kp: float  # N m/rad, 0: coupled
-    kd: float  # N m s/rad
-    effort: float  # N m
-    action: int  # entry of the hand's action, -1: none
-
-
-class rdm_joint(Structure):
-    """name: "FFJ2"
-    lower: rad
-    upper: rad
-    kp: N m/rad, 0: coupled
-    kd: N m s/rad
-    effort: N m
-    action: entry of the hand's action, -1: none
-    reserved: 0
-    """
-
-    name: bytes | None
-    lower: float
-    upper: float
-    kp: float
-    kd: float
-    effort: float
-    action: int
-    reserved: int
-    _fields_ = [
-        ("name", c_char_p),
-        ("lower", c_double),
-        ("upper", c_double),
-        ("kp", c_double),
-        ("kd", c_double),
-        ("effort", c_double),
-        ("action", c_int32),
-        ("reserved", c_int32),
-    ]
-
-
 class JointInfo(Record):
     """The values of rdm_joint_info."""
 
     kind: int  # RDM_JOINT_*: revolute joints in rad and N m, prismatic in m and N
     parent: int  # the joint before it on the way from the base, -1: none
-    action: int  # entry of the action (of a robot: its command) that is its own; -1: none, or only the functions of a host's task know
+    action: int  # entry of the action (of a robot, in a scene too: its command) that is its own; -1: none, or only the functions of a host's task know
     name: str  # "FFJ2"; of a pool "right_FFJ2"
     lower: float  # range, rad (m)
     upper: float  # range, rad (m)
@@ -876,8 +833,8 @@ class rdm_joint_info(Structure):
     """struct_size: in: bytes
     kind: RDM_JOINT_*: revolute joints in rad and N m, prismatic in m and N
     parent: the joint before it on the way from the base, -1: none
-    action: entry of the action (of a robot: its command) that is its own; -1: none, or only the functions of a
-        host's task know
+    action: entry of the action (of a robot, in a scene too: its command) that is its own; -1: none, or only the
+        functions of a host's task know
     name: "FFJ2"; of a pool "right_FFJ2"
     lower: range, rad (m)
     upper: range, rad (m)
@@ -3281,7 +3238,6 @@ STRUCTS: dict[str, type[Structure]] = {
     "rdm_cost_info": rdm_cost_info,
     "rdm_camera_info": rdm_camera_info,
     "rdm_robot": rdm_robot,
-    "rdm_joint": rdm_joint,
     "rdm_joint_info": rdm_joint_info,
     "rdm_object": rdm_object,
     "rdm_pool_config": rdm_pool_config,
@@ -3624,10 +3580,6 @@ FUNCTIONS: dict[str, Function] = {
         """name or alias; NOT_FOUND:
         nearest in the text
         """),
-    "rdm_robot_joint": Function(
-        c_int32, {"robot": c_int32, "i": c_int32, "out": POINTER(rdm_joint)},
-        {}, False,
-        """i < num_joints"""),
     "rdm_robot_joint_at": Function(
         c_int32, {"robot": c_int32, "i": c_int32, "io": POINTER(rdm_joint_info)},
         {}, False,
@@ -4736,9 +4688,9 @@ FUNCTIONS: dict[str, Function] = {
         {}, True,
         """NOT_FOUND: nearest"""),
     "rdm_scene_joint_at": Function(
-        c_int32, {"scene": c_void_p, "i": c_int32, "out": POINTER(rdm_joint)},
+        c_int32, {"scene": c_void_p, "i": c_int32, "io": POINTER(rdm_joint_info)},
         {}, True,
-        """action: its robot's command, -1"""),
+        """of all robots, robot by robot"""),
     "rdm_scene_add_touch": Function(
         c_int32, {"scene": c_void_p, "a": c_char_p, "b": c_char_p, "group": c_void_p},
         {}, True,

@@ -56,6 +56,10 @@ class Shape(_abi.ShapeInfo):
     """A part of what the scene is made of; kind is a redman.ShapeKind."""
 
 
+class Joint(_abi.JointInfo):
+    """A joint of a robot, or of a pool's worlds; kind is a redman.JointKind."""
+
+
 def fields_of(owner: int, count: int, call: Callable[..., int]) -> dict[str, Field]:
     """All fields of a task or a pool by name."""
     return _records(Field, _abi.rdm_field_info, call, count, owner)
@@ -108,12 +112,12 @@ class Algo(_abi.Algo):
 class Robot(_abi.Robot):
     """A robot description with its joints by name."""
 
-    joints: dict[str, _abi.Joint]
+    joints: dict[str, Joint]
 
     def __init__(self, index: int) -> None:
         super().__init__(filled(_abi.rdm_robot, lib.rdm_robot_at, index))
         self.__dict__["joints"] = _records(
-            _abi.Joint, _abi.rdm_joint, lib.rdm_robot_joint, self.num_joints, index)
+            Joint, _abi.rdm_joint_info, lib.rdm_robot_joint_at, self.num_joints, index)
 
 
 @lru_cache(maxsize=None)

@@ -414,9 +414,9 @@ class Pool(Hinted):
         return out
 
     @property
-    def joints(self) -> list[_abi.JointInfo]:
-        """The joints of all robots of a world, the same for all worlds; kind is a redman.JointKind."""
-        return [_abi.JointInfo(filled(_abi.rdm_joint_info, lib.rdm_pool_joint_at, self._open(), i))
+    def joints(self) -> list[_discovery.Joint]:
+        """The joints of all robots of a world, the same for all worlds."""
+        return [_discovery.Joint(filled(_abi.rdm_joint_info, lib.rdm_pool_joint_at, self._open(), i))
                 for i in range(self.spec.num_joints)]
 
     def joint_positions(self, env: int = 0) -> Array:

@@ -178,8 +178,8 @@ DemoHand::DemoHand(const redman::Pool& pool, const Options& settings, int32_t si
   joint_.resize(static_cast<size_t>(robot.num_actuated));
   entries_.resize(joint_.size());
   for (int32_t i = 0; i < robot.num_joints; ++i) {
-    rdm_joint j{};
-    redman::check(rdm_robot_joint(robot_, i, &j));
+    rdm_joint_info j = RDM_INIT(rdm_joint_info);
+    redman::check(rdm_robot_joint_at(robot_, i, &j));
     rows_.push_back(j);
     if (j.action < 0) continue;
     const auto k = static_cast<size_t>(j.action);

@@ -63,7 +63,7 @@ class DemoHand {
   int32_t robot_ = -1, mounted_ = -1;  // the latter one is its own
   int32_t arm_joints_ = 0;
   std::vector<int32_t> joint_;  // [entries that are joints] row of each
-  std::vector<rdm_joint> rows_;
+  std::vector<rdm_joint_info> rows_;
   std::vector<rdm_robot_coupling> couplings_;
   Place base_;  // of the root
 };

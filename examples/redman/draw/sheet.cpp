@@ -99,8 +99,8 @@ Shown show_robot(int32_t index, int32_t joints) {
   out.robot = true;
   out.index = index, out.joints = joints;
   for (int32_t i = 0; i < joints; ++i) {
-    rdm_joint j;
-    redman::check(rdm_robot_joint(index, i, &j));
+    rdm_joint_info j = RDM_INIT(rdm_joint_info);
+    redman::check(rdm_robot_joint_at(index, i, &j));
     out.q[i] = j.lower + kOpen * (j.upper - j.lower);
   }
   std::vector<rdm_pose> links(static_cast<size_t>(joints));
