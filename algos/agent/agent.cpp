@@ -204,6 +204,7 @@ CloneReport Agent::clone(const DemoRows& demo, const CloneOptions& how) {
   const CloneReport report =
       clone_actor(resolved_, demo, how, regression_, nets_, collector_.normalizer(), cancel_);
   restart_average(nets_);
+  collector_.measure_usual(demo.obs, demo.rows);
   return report;
 }
 
@@ -281,6 +282,7 @@ void Agent::load_policy(const PolicyView& p, double samples) {
   std::fill_n(adam.v, adam.size, 0.0f);
   adam.t = 0;
   if (!collector_.normalizes()) return;
+  collector_.usual().set(p.usual);
   n.count = samples;
   std::fill_n(n.mean, n.dim, 0.0);
   std::fill_n(n.m2, n.dim, samples - 1);  // of entries that the policy does not see: as they are
@@ -330,10 +332,10 @@ void Agent::read_state(const void* bytes, size_t size, bool apply) {
   Reader in(bytes, size, "agent state");
   in.begin_file(kMagic, kVersion);
   read_fingerprint(in, resolved_, apply);
-  if (apply) read_live();
+  if (apply) read_live(), collector_.usual().set({});
   StateReader io(in, apply, workers_.ranks().rank(), workers_.ranks().count());
   visit_state(io);
-  io.end();
+  io.end_listing();
 }
 
 void Agent::check_state(const void* bytes, size_t size) {
@@ -378,7 +380,7 @@ PolicyView Agent::policy_view() {
     pick_columns(n.scale, 1, n.dim, v.columns, v.entries(), scale);
     v.shift = shift, v.scale = scale;
   }
-  v.clip = collector_.normalizes() ? n.clip : 0;
+  if (collector_.normalizes()) v.clip = n.clip, v.usual = collector_.usual().known();
   v.action_repeat = resolved_.action_repeat;
   v.noise_correlation = static_cast<float>(resolved_.options.number("noise_correlation"));
   v.control_dt = resolved_.config.control_dt;

@@ -188,6 +188,7 @@ void Agent::end_update() {
   const double rate = warm ? 0 : schedule_.rate(epoch_);
   if (learned_.passes > 0 && !warm) schedule_.adapt(learned_.mean.kl, epoch_);
   collector_.episodes().mark();
+  collector_.close_usual();
   ++epoch_;
   if (!warm) schedule_std(nets_, resolved_.options, epoch_);
   if (!warm) average_actor(nets_);

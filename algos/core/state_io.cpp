@@ -13,6 +13,13 @@ void StateWriter::section(const char tag[4]) {
   open_ = true;
 }
 
+bool StateWriter::later_section(const char tag[4], bool known) {
+  end();
+  if (!known) return false;
+  out_.begin_later_section(tag);
+  return open_ = true;
+}
+
 void StateWriter::end() {
   if (open_) out_.end_section();
   open_ = false;
@@ -32,6 +39,21 @@ void StateReader::section(const char tag[4]) {
   end();
   in_.need_section(tag);
   std::memcpy(tag_, tag, 4);
+  const size_t n = std::strlen(listed_);
+  if (n + 4 >= sizeof listed_) fail(Code::kInternal, "agent state: more sections than are listed");
+  std::memcpy(listed_ + n, tag, 4);
+}
+
+bool StateReader::later_section(const char tag[4], bool) {
+  end();
+  if (!in_.find_later_section(tag)) return false;
+  std::memcpy(tag_, tag, 4);
+  return true;
+}
+
+void StateReader::end_listing() {
+  end();
+  in_.need_whole_tags(listed_);
 }
 
 void StateReader::end() {

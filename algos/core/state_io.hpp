@@ -34,6 +34,8 @@ class StateIo {
   virtual ~StateIo() = default;
   // Ends the section before it.
   virtual void section(const char tag[4]) = 0;
+  // One that came later, and that a state may be without: false then. A writer writes it where it is `known`.
+  virtual bool later_section(const char tag[4], bool known) = 0;
   virtual void end() = 0;
   // Finite numbers in [low, high].
   virtual StateView<float> numbers(float* x, size_t count, double low, double high) = 0;
@@ -74,6 +76,7 @@ class StateWriter final : public StateIo {
   explicit StateWriter(Writer& out) : StateWriter(out, nullptr) {}
   using StateIo::integer;
   void section(const char tag[4]) override;
+  bool later_section(const char tag[4], bool known) override;
   void end() override;
   StateView<float> numbers(float* x, size_t count, double, double) override {
     out_.bytes(x, count * sizeof *x);
@@ -108,7 +111,10 @@ class StateReader final : public StateIo {
       : in_(in), apply_(apply), rank_(rank), ranks_(ranks) {}
   using StateIo::integer;
   void section(const char tag[4]) override;
+  bool later_section(const char tag[4], bool known) override;
   void end() override;
+  // At the end of the listing: Error(kFormat) for a section that is not of it, nor a later one, whole.
+  void end_listing();
   StateView<float> numbers(float* x, size_t count, double low, double high) override;
   StateView<double> numbers(double* x, size_t count, double low, double high) override;
   int64_t integer(int64_t& x, int64_t low, int64_t high) override;
@@ -130,6 +136,7 @@ class StateReader final : public StateIo {
   bool apply_;
   int32_t rank_, ranks_;
   char tag_[5] = "";
+  char listed_[4 * 24 + 1] = "CONF";  // tags of all sections so far, and of the fingerprint
 };
 
 }  // namespace rdm

@@ -57,6 +57,7 @@ void Collector::carve(Arena& arena, const ResolvedAgentConfig& resolved) {
   scaled_reward_ = arena.make<float>(resolved.num_envs());
   scaled_cost_ = arena.make<float>(resolved.num_envs() * static_cast<size_t>(resolved.config.cost_dim));
   noise_.carve(arena, resolved);
+  if (o.flag("normalize_obs")) usual_.carve(arena, resolved.num_envs());
   episodes_.carve(arena, resolved.config.num_envs, resolved.config.cost_dim,
                   o.knows("multiplier_window") ? o.integer("multiplier_window") : kStatsWindow,
                   resolved.config.ranks.count);
@@ -99,6 +100,7 @@ void Collector::open(const ResolvedAgentConfig& resolved, const Networks& nets, 
 void Collector::drop() {
   rollout_.filled = 0;
   pending_ = false;
+  if (normalize_) usual_.drop();
   std::fill_n(epoch_cost_, resolved_->num_envs() * static_cast<size_t>(resolved_->config.cost_dim), 0.0);
   std::fill_n(epoch_steps_, resolved_->num_envs(), 0.0);
   invalid_ = cut_ = 0;
@@ -109,6 +111,17 @@ const float* Collector::normalized(const float* obs, int32_t rows, float* memory
   if (!normalize_) return obs;
   normalizer_apply(normalizer_, obs, rows, memory);
   return memory;
+}
+
+Novelty Collector::novelty(const float* row) const {
+  return novelty_of({row, normalizer_.shift, normalizer_.scale, nets_->columns[Networks::kActor], true},
+                    nets_->actor_entries());
+}
+
+void Collector::measure_usual(const float* obs, int32_t rows) {
+  if (!normalize_) return;
+  for (size_t i = 0; i < static_cast<size_t>(rows); ++i) usual_.count(novelty(obs + i * rollout_.obs_dim));
+  usual_.close_alone();
 }
 
 void Collector::values(const Workspace& workspace, const float* x, int32_t rows, float* value,
@@ -170,6 +183,7 @@ void Collector::act_rows(const Workspace& workspace, const float* obs, const Poi
     const float *log_std = r.log_std_of(at + i), *std = std_;
     if (nets_->state_std()) kernels().map_exp(log_std, dim, own_std), std = own_std;
     const int32_t env = first + static_cast<int32_t>(i);
+    if (normalize_) usual_.see(static_cast<size_t>(env), novelty(obs + i * r.obs_dim));
     if (given)
       noise_.take(env, mean + i * dim, given + i * dim, centered);
     else
@@ -389,6 +403,7 @@ void Collector::record_row(const Transition& t, int32_t env) {
   count_row(t, env, cost, steps);
   r.valid[at] = flag(t.valid, e, true);
   if (r.valid[at]) {
+    if (normalize_) usual_.count(e);
     const bool over = flag(t.terminated, e, false) || flag(t.truncated, e, false);
     r.reward[at] = reward_[e] + discount * final_value_[e];
     for (size_t i = 0; i < costs; ++i)
@@ -542,6 +557,7 @@ void Collector::visit(StateIo& io) {
   }
   noise_.visit(io);
   episodes_.visit(io);
+  usual_.visit(io);
 }
 
 }  // namespace rdm

@@ -17,6 +17,7 @@
 #include "algos/rollout/limits.hpp"
 #include "algos/rollout/noise.hpp"
 #include "algos/rollout/rollout.hpp"
+#include "algos/rollout/usual.hpp"
 #include "nn/normalizer.hpp"
 
 namespace rdm {
@@ -70,6 +71,13 @@ class Collector {
   // The rows as networks see them: obs, or with normalize_obs memory [rows][obs_dim], which may be obs.
   const float* normalized(const float* obs, int32_t rows, float* memory) const;
   bool normalizes() const { return normalize_; }
+  // How far rows of an epoch usually are from what the statistics say; with normalize_obs.
+  UsualRows& usual() { return usual_; }
+  void close_usual() {
+    if (normalize_) usual_.close(workers_->ranks());
+  }
+  // What is usual is that of these rows, a recording's, not of an epoch's.
+  void measure_usual(const float* obs, int32_t rows);
   int64_t env_steps() const { return env_steps_ + own_steps_; }  // of others: those that settle has counted
   void visit(StateIo& io);
   void after_load() {
@@ -99,6 +107,7 @@ class Collector {
   void follow(const Transition& t);
   void value_truncated(const Transition& t);
   void list_rows();
+  Novelty novelty(const float* row) const;
   void scale_rewards(const Transition& t);
   void merge(Normalizer& n, const float* x, const uint8_t* mask, double count_max);
   void check_flags(const char* name, const uint8_t* flags) const;
@@ -113,6 +122,7 @@ class Collector {
   Rollout rollout_;
   Normalizer normalizer_, reward_scale_, cost_scale_;
   Noise noise_;
+  UsualRows usual_;
   Episodes episodes_;
   float* std_ = nullptr;          // [action_dim] of the innovation; none with std_mode=state
   float* final_value_ = nullptr;  // [num_envs] V of the final observation after truncation, else 0

@@ -244,6 +244,23 @@ void read_generation(Reader& in, PolicyView& v) {
   in.expect_end();
 }
 
+void write_usual(Writer& out, const PolicyView& v) {
+  out.begin_later_section("SEEN");
+  out.value(v.usual.rms);
+  out.value(v.usual.largest);
+  out.end_section();
+}
+
+void read_usual(Reader& in, PolicyView& v) {
+  if (!in.find_later_section("SEEN")) return;
+  if (v.clip == 0) bad("it tells what is usual in a row, and has no normaliser");
+  for (float* x : {&v.usual.rms, &v.usual.largest}) {
+    *x = in.value<float>();
+    if (!(*x >= 1e-6f && *x <= 1e30f)) bad("what is usual in a row is out of range");
+  }
+  in.expect_end();
+}
+
 void write_fields(Writer& out, const PolicyView& v) {
   out.begin_later_section("FLDS");
   out.value(v.num_fields);
@@ -337,6 +354,7 @@ PolicyParts read_parts(const void* bytes, size_t size) {
   if (version == 3 || (version > 3 && in.find_section("COLS"))) read_columns(in, parts);
   read_fields(in, parts);
   read_generation(in, v);
+  read_usual(in, v);
   in.need_section("WGTS");
   parts.params = view_floats(in, v.actor.num_params());
   parts.eyes = view_floats(in, v.eyes.num_params());
@@ -495,6 +513,7 @@ void write_policy(Writer& out, const PolicyView& view) {
     out.value(view.generation);
     out.end_section();
   }
+  if (view.usual.rms > 0) write_usual(out, view);
   out.begin_section("WGTS");
   write_floats(out, view.params, shape.num_params());
   write_floats(out, view.eyes_params, eyes.num_params());
@@ -574,9 +593,16 @@ void Policy::update(const PolicyView& from) {
   v.control_dt = from.control_dt;
   v.layout_hash = from.layout_hash;
   v.generation = from.generation;
+  v.usual = from.usual;
   std::memcpy(v.task, from.task, sizeof v.task);
   act_view(v, v.example_obs, {v.example_points, nullptr, v.example_classes, v.example_colors}, 1, nullptr,
            {const_cast<float*>(v.example_action)}, scratch_);
+}
+
+void Policy::novelty(const float* obs, int32_t rows, float* novelty) const {
+  const PolicyView& v = view_;
+  for (int32_t i = 0; i < rows; ++i, obs += v.obs_dim())
+    novelty[i] = scaled(novelty_of({obs, v.shift, v.scale, v.columns}, v.entries()), v.usual);
 }
 
 size_t Policy::scratch_bytes(int32_t rows) const {

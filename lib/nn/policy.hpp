@@ -2,13 +2,14 @@
 // Serialised form: the policy.rdm file (base/bytes.hpp), magic "RDMPOLIC". Version 2 is written for a policy
 // whose deviation depends on the state, version 3 for one that sees a part of the observation alone, version
 // 4 for one that sees points, version 5 for one that sees their colours: versions before do not know these.
-// Sections FLDS, the names of fields, and GENR, the generation, came later and are in files of each version: a
-// reader finds sections by their tags, and passes over others.
+// Sections FLDS, the names of fields, GENR, the generation, and SEEN, what is usual in a row, came later and
+// are in files of each version: a reader finds sections by their tags, and passes over others.
 #pragma once
 #include <cstdint>
 
 #include "base/bytes.hpp"
 #include "base/file.hpp"
+#include "nn/novelty.hpp"
 #include "nn/obs_field.hpp"
 #include "nn/pointnet.hpp"
 
@@ -32,6 +33,7 @@ struct PolicyView {
   const float* shift = nullptr;        // [entries()] observation normaliser: clip((x - shift) scale, +-clip)
   const float* scale = nullptr;        // [entries()]
   float clip = 0;                      // 0: no normaliser
+  Novelty usual;                       // of rows in training; unknown without a normaliser
   int32_t action_repeat = 1;           // control steps per decision
   float noise_correlation = 0;         // AR(1) coefficient of the exploration noise
   float control_dt = 0;                // s, 0 unknown
@@ -75,6 +77,9 @@ class Policy {
   // The same without the clip, of one that sees no points; the mean too. One of the two may be null.
   void sample(const float* obs, int32_t rows, const float* noise, float* action, float* mean,
               void* scratch) const;
+
+  // novelty [rows] of obs; view().usual must be known.
+  void novelty(const float* obs, int32_t rows, float* novelty) const;
 
   // Becomes what a file of `from` would be read as, but for the names of fields; sizes and action_repeat agree.
   // Error(kArgument) for numbers that a file is refused for: nothing changes.

@@ -35,7 +35,7 @@ struct Made {
     else
       view.log_std = log_std.data();
     view.clip = clip;
-    if (clip > 0) view.shift = shift.data(), view.scale = scale.data();
+    if (clip > 0) view.shift = shift.data(), view.scale = scale.data(), view.usual = {1.5f, 6};
     view.action_repeat = 2;
     view.noise_correlation = 0.25f;
     view.control_dt = 1.0f / 60;
@@ -132,6 +132,8 @@ TEST(Policy, RoundTripKeepsEverything) {
   EXPECT_EQ(v.control_dt, 1.0f / 60);
   EXPECT_EQ(v.layout_hash, 0x0123456789abcdefull);
   EXPECT_EQ(v.generation, 77u);
+  EXPECT_EQ(v.usual.rms, 1.5f);
+  EXPECT_EQ(v.usual.largest, 6);
   EXPECT_STREQ(v.task, "egg_catch");
   ASSERT_EQ(v.num_fields, 2);
   for (size_t i = 0; i < 2; ++i) {
@@ -392,7 +394,7 @@ TEST(Policy, EveryFlippedBitIsAnError) {
 TEST(Policy, ForgedBytesAreAPolicyOrAnError) {
   const Bytes b = Made(make_shape(3, {2}, 2), 5, true).bytes();
   int errors = 0;
-  for (const char* tag : {"META", "ARCH", "HEAD", "FLDS", "GENR", "WGTS", "NORM", "EXMP"}) {
+  for (const char* tag : {"META", "ARCH", "HEAD", "FLDS", "GENR", "SEEN", "WGTS", "NORM", "EXMP"}) {
     Bytes whole = b;
     size_t size = 0;
     section(whole, tag, &size);
@@ -454,6 +456,9 @@ TEST(Policy, ValuesOutOfRangeAreErrors) {
   EXPECT_EQ(with("NORM", 4, INFINITY), Code::kFormat);
   EXPECT_EQ(with("NORM", 12, 0.0f), Code::kFormat);  // a scale that is not positive
   EXPECT_EQ(with("EXMP", 0, NAN), Code::kFormat);
+  for (const float x : {0.0f, -1.0f, 1e-7f, 1e31f, NAN, INFINITY})
+    for (const size_t number : {0, 1}) EXPECT_EQ(with("SEEN", 4 + 4 * number, x), Code::kFormat) << x;
+  EXPECT_EQ(with("META", 0, 0.0f), Code::kFormat) << "what is usual, and no normaliser";
   for (const int32_t n : {0, -1, 1, 3, 4097, INT32_MAX}) EXPECT_EQ(with("FLDS", 4, n), Code::kFormat) << n;
   for (const size_t field : {0, 1})
     for (const int32_t n : {-1, 4, INT32_MAX}) {
