@@ -235,6 +235,7 @@ rdm_result rdm_policy_get_info(const rdm_policy* p, rdm_policy_info* io) {
     info.num_features = v.eyes.features();
     info.point_color = v.eyes.color;
     info.num_fields = v.num_fields;
+    info.novelty = v.usual.rms > 0;
     info.generation = v.generation;
     write_struct(io, info, offsetof(rdm_policy_info, activation), "io");
   });
@@ -294,6 +295,24 @@ rdm_result rdm_policy_sample(const rdm_policy* p, const float* obs, int32_t rows
     if (!action && !mean) fail(Code::kArgument, "action and mean are NULL: there is nothing to write");
     act(p, obs, rows, noise, action, mean, scratch, scratch_bytes,
         [&](void* memory) { p->policy->sample(obs, rows, noise, action, mean, memory); });
+  });
+}
+
+rdm_result rdm_policy_novelty(const rdm_policy* p, const float* obs, int32_t rows, float* novelty) {
+  return call([&] {
+    need_handle(p);
+    need(obs, "obs");
+    need_rows(rows);
+    need(novelty, "novelty");
+    const uint32_t begun = p->changes.begin_reading("policy");
+    const PolicyView& v = p->policy->view();
+    if (!(v.usual.rms > 0))
+      fail(Code::kUnsupported,
+           "novelty: the policy does not tell which rows are usual; an agent with normalize_obs writes it, "
+           "once it has learned from 1000 rows");
+    need_finite(obs, rows, v.obs_dim(), "obs");
+    p->policy->novelty(obs, rows, novelty);
+    p->changes.end_reading(begun, "policy");
   });
 }
 

@@ -25,7 +25,7 @@ typedef struct rdm_policy_info { /* what a policy file tells of its network */
   int32_t num_features;       /* that its encoder makes of a cloud, 0 without */
   int32_t point_color;        /* whether it sees the colours of points: 0, 1 */
   int32_t num_fields;         /* for rdm_policy_field_at; 0: the file says none */
-  int32_t reserved;           /* 0 */
+  int32_t novelty;            /* whether rdm_policy_novelty tells: 0, 1 */
   uint64_t generation;        /* which network: the low 32 bits are the epochs that its agent had
                                * learned, the high ones a checksum of it; what was sampled by
                                * another one is stale. 0: unknown */
@@ -65,6 +65,22 @@ RDM_API rdm_result rdm_policy_act(const rdm_policy *p, const float *obs, int32_t
 RDM_API rdm_result rdm_policy_sample(const rdm_policy *p, const float *obs, int32_t rows,
                                      const float *noise, float *action, float *mean,
                                      void *scratch, size_t scratch_bytes);
+/* How far rows are from those that the policy learned on: novelty [rows] of obs [rows][obs_dim].
+ *
+ *   z_j = (x_j - mean_j) / deviation_j, of the m entries x of a row that the policy sees
+ *   novelty = max(sqrt(sum of z_j^2 / m) / a, max of |z_j| / b)
+ *
+ * mean and deviation are the normaliser's, of all rows in training (with options obs_freeze and
+ * obs_count_max, of those that it counts), a deviation at least 0.01. One row in a thousand of the
+ * last epochs, of 1000 rows or more, had a root mean square above a, one in a thousand a largest
+ * above b; of a clone, of its recording. So about 1 is the most that training saw, and 2 is far
+ * from it. Not found is what is usual in each entry and unusual together, as a sensor that stands
+ * still at a usual value, nor what is unusual of an entry and usual of another one; clouds are not
+ * looked at. UNSUPPORTED, and rdm_policy_info.novelty 0, where the file does not tell: of 0.1, of
+ * an agent without normalize_obs, or that has not learned from 1000 rows since its statistics
+ * were given to it. ARGUMENT when obs is not finite. No heap; any number of threads. */
+RDM_API rdm_result rdm_policy_novelty(const rdm_policy *p, const float *obs, int32_t rows,
+                                      float *novelty);
 /* "actor.0.weight" of rows outputs and cols inputs, "actor.log_std" or "actor.log_std_bounds",
  * "normalizer.shift|scale|clip", "example.obs|action". RANGE ends the list. All are over whole rows
  * of obs_dim: a weight of an entry that the policy does not see is 0. Of one that sees points

@@ -164,6 +164,9 @@ TEST(RedmanHpp, AgentLearnsFromAPoolAndItsPolicyActs) {
   EXPECT_EQ(same.settings(), settings);
 
   const redman::Policy policy(file);
+  float novelty = 0;
+  EXPECT_EQ(policy.info().novelty, 0);
+  EXPECT_THROW(policy.novelty(pool.obs().data(), 1, &novelty), redman::Error);
   policy.check_fits(pool.spec());
   EXPECT_STREQ(policy.info().task, kTask);
   std::vector<float> by_policy(2 * pool.action().width()), by_agent(by_policy.size());

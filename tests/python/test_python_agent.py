@@ -177,6 +177,27 @@ class PartsOfARow(unittest.TestCase):
         with self.assertRaises(redman.UnsupportedError):
             make(average=0.5).put(obs, action, reward, cost, generation=generation)
 
+    def test_a_policy_tells_what_it_never_saw(self):
+        agent = redman.Agent(algo="ppo", obs_dim=3, action_dim=2, num_envs=40, cost_dim=0,
+                             options={"hidden": "8", "horizon": 30})
+        with self.assertRaises(redman.UnsupportedError):
+            agent.policy().novelty(np.zeros(3))
+        rng = np.random.default_rng(1)
+        for _ in range(30):
+            obs = rng.uniform(-1, 1, size=(40, 3))
+            agent.act(obs)
+            agent.record(rng.normal(size=40))
+        agent.update(obs)
+        policy = agent.policy()
+        self.assertEqual(policy.info.novelty, 1)
+        rows = policy.novelty(obs)
+        self.assertEqual(rows.shape, (40,))
+        self.assertLess(rows.max(), 1.2)
+        self.assertEqual(policy.novelty(obs[7]), rows[7])
+        self.assertGreater(policy.novelty([0, 1e6, 0]), 1e4)
+        with self.assertRaises(redman.ArgumentError):
+            policy.novelty(np.zeros(4))
+
     def test_costs_that_are_magnitudes(self):
         said = {}
         for signal in ("flag", "raw"):

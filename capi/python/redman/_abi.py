@@ -581,6 +581,7 @@ class PolicyInfo(Record):
     num_features: int  # that its encoder makes of a cloud, 0 without
     point_color: int  # whether it sees the colours of points: 0, 1
     num_fields: int  # for rdm_policy_field_at; 0: the file says none
+    novelty: int  # whether rdm_policy_novelty tells: 0, 1
     generation: int  # which network: the low 32 bits are the epochs that its agent had learned, the high ones a checksum of it; what was sampled by another one is stale. 0: unknown
 
 
@@ -600,7 +601,7 @@ class rdm_policy_info(Structure):
     num_features: that its encoder makes of a cloud, 0 without
     point_color: whether it sees the colours of points: 0, 1
     num_fields: for rdm_policy_field_at; 0: the file says none
-    reserved: 0
+    novelty: whether rdm_policy_novelty tells: 0, 1
     generation: which network: the low 32 bits are the epochs that its agent had learned, the high ones a
         checksum of it; what was sampled by another one is stale. 0: unknown
     """
@@ -620,7 +621,7 @@ class rdm_policy_info(Structure):
     num_features: int
     point_color: int
     num_fields: int
-    reserved: int
+    novelty: int
     generation: int
     _fields_ = [
         ("struct_size", c_uint32),
@@ -638,7 +639,7 @@ class rdm_policy_info(Structure):
         ("num_features", c_int32),
         ("point_color", c_int32),
         ("num_fields", c_int32),
-        ("reserved", c_int32),
+        ("novelty", c_int32),
         ("generation", c_uint64),
     ]
 
@@ -3498,6 +3499,24 @@ FUNCTIONS: dict[str, Function] = {
         learned from: action [rows][action_dim] = mean + std noise, and mean [rows][action_dim], for
         obs [rows][obs_dim] and noise [rows][action_dim], NULL: none. One of action and mean may be NULL.
         scratch [scratch_bytes] and errors as of rdm_policy_act.
+        """),
+    "rdm_policy_novelty": Function(
+        c_int32, {"p": c_void_p, "obs": c_void_p, "rows": c_int32, "novelty": c_void_p},
+        {"obs": Rows("float32", ("rows", "obs_dim")), "novelty": Rows("float32", ("rows",))}, False,
+        """How far rows are from those that the policy learned on: novelty [rows] of obs [rows][obs_dim].
+
+          z_j = (x_j - mean_j) / deviation_j, of the m entries x of a row that the policy sees
+          novelty = max(sqrt(sum of z_j^2 / m) / a, max of |z_j| / b)
+
+        mean and deviation are the normaliser's, of all rows in training (with options obs_freeze and
+        obs_count_max, of those that it counts), a deviation at least 0.01. One row in a thousand of the
+        last epochs, of 1000 rows or more, had a root mean square above a, one in a thousand a largest
+        above b; of a clone, of its recording. So about 1 is the most that training saw, and 2 is far
+        from it. Not found is what is usual in each entry and unusual together, as a sensor that stands
+        still at a usual value, nor what is unusual of an entry and usual of another one; clouds are not
+        looked at. UNSUPPORTED, and rdm_policy_info.novelty 0, where the file does not tell: of 0.1, of
+        an agent without normalize_obs, or that has not learned from 1000 rows since its statistics
+        were given to it. ARGUMENT when obs is not finite. No heap; any number of threads.
         """),
     "rdm_policy_tensor_at": Function(
         c_int32, {"p": c_void_p, "i": c_int32, "out": POINTER(rdm_tensor)},

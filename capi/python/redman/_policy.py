@@ -147,6 +147,22 @@ class Policy(Hinted):
 
     __call__ = act
 
+    def novelty(self, obs: Any) -> Any:
+        """How far an observation [obs_dim], or rows [n][obs_dim], are from those that it learned on: a float, or [n].
+
+        About 1 is the most that training saw, 2 is far from it. UnsupportedError where info.novelty is 0.
+        """
+        observed = np.asarray(obs)
+        if observed.ndim not in (1, 2) or observed.shape[-1] != self.info.obs_dim:
+            raise ArgumentError(f"obs: shape {observed.shape} does not fit (rows, {self.info.obs_dim})")
+        rows = observed.shape[0] if observed.ndim == 2 else 1
+        seen = given(observed, _abi.FUNCTIONS["rdm_policy_novelty"].rows["obs"],
+                     {"rows": rows, "obs_dim": self.info.obs_dim}, "obs")
+        novelty = np.empty(rows, np.float32)
+        if rows:
+            check(lib.rdm_policy_novelty(self._handle.value, seen.ctypes.data, rows, novelty.ctypes.data))
+        return novelty if observed.ndim == 2 else float(novelty[0])
+
     def actor(self, where: Any = None, *, num_envs: Optional[int] = None, action_repeat: int = 1, center: Any = None,
               stochastic: bool = False, seed: int = 0) -> Actor:
         """What plays this policy in a pool, or in an environment of redman.gym, sb3, safety or omnisafe: an Actor.
