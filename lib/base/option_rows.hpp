@@ -100,6 +100,9 @@ struct OptionRows {
     return out;
   }
 
+  // The Options have these rows.
+  bool known_to(const Options& options) const { return options.knows(specs[0].key); }
+
   template <auto kMember>
   constexpr const OptionSpec& of() const {
     return specs[index_of<kMember>()];

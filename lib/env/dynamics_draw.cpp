@@ -35,7 +35,7 @@ bool levelled(const char* key) {
 // level, a factor about 1.
 OptionRange factor_of(const Options& o, const char* key) {
   if (!o.given(key)) {
-    const double spread = levelled(key) && o.knows(kRows.specs[0].key) ? kSpread[kRows.read(o).level] : 0;
+    const double spread = levelled(key) && kRows.known_to(o) ? kSpread[kRows.read(o).level] : 0;
     return {1 - spread, 1 + spread};
   }
   const OptionRange range = o.range(key);

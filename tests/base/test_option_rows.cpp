@@ -104,6 +104,11 @@ TEST(OptionRows, APartOfAListReadsItsOwnMembers) {
   EXPECT_EQ(kBase.read(made(kRows, "steps=3")).steps, 3);
 }
 
+TEST(OptionRows, OptionsMayBeWithoutThem) {
+  EXPECT_TRUE(kBase.known_to(made(kRows)));
+  EXPECT_FALSE(kBase.known_to(Options()));
+}
+
 // Where none of these holds, row<...>() does not compile.
 static_assert(OptionValue<double>::fits(number_option("a", 0, 0, 1, "")));
 static_assert(!OptionValue<double>::fits(integer_option("a", 0, 0, 1, "")));
