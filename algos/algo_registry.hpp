@@ -1,7 +1,5 @@
 // The list of algorithms: how each is described, made and ended.
 #pragma once
-#include <array>
-
 #include "algos/agent/agent.hpp"
 #include "algos/core/algo_row.hpp"
 #include "algos/core/resolved_config.hpp"
@@ -12,13 +10,12 @@ namespace rdm {
 extern const AlgoRow kPpo, kTrpo, kPpoLag, kTrpoLag, kCppoPid, kCpo, kPcpo, kFocops, kP3o, kIpo;
 
 // The row of an algorithm whose class is T.
-template <class T, size_t N>
-constexpr AlgoRow make_algo_row(const char* name, const char* summary,
-                                const std::array<OptionSpec, N>& options, Costs costs,
+template <class T, class Rows>
+constexpr AlgoRow make_algo_row(const char* name, const char* summary, const Rows& options, Costs costs,
                                 void (*adapt)(ResolvedAgentConfig&) = nullptr) {
   AlgoRow row{};
   row.adapt = adapt;
-  row.info = {name, summary, options.data(), static_cast<int32_t>(N)};
+  row.info = {name, summary, options.data(), static_cast<int32_t>(options.size())};
   row.costs = costs;
   row.measure = [](ResolvedAgentConfig&& resolved) -> size_t {
     T agent(std::move(resolved));

@@ -78,14 +78,13 @@ void Agent::open(const AgentConfig& config) {
   regression_.open(resolved_, collector_, nets_, workers_);
   imitation_.open(resolved_, regression_);
   learner_.imitate(&imitation_);
-  schedule_.reset(resolved_.options);
+  schedule_.open(resolved_.shared);
   for (int32_t b = 0; b < resolved_.blocks; ++b)
     shuffle_[b] =
         Stream(config.seed, static_cast<uint32_t>(workers_.ranks().first_block() + b), Purpose::kMinibatch);
   init_networks(nets_, resolved_);
   restart_average(nets_);
   opened();
-  raw_costs_ = std::strcmp(resolved_.options.text("cost_signal"), "raw") == 0;
   read_live();
   TensorInfo t;
   for (int32_t i = 0; find_tensor(nets_, i, names_[i], &t);) ++i;
@@ -99,10 +98,8 @@ void Agent::open(const AgentConfig& config) {
 }
 
 void Agent::read_live() {
-  learner_.read_live(resolved_.options);
-  imitation_.read_live(resolved_.options);
-  warm_epochs_ = resolved_.options.integer("warm_epochs");
-  schedule_.read_live(resolved_.options);
+  resolved_.read_shared();
+  schedule_.read_live();
   if (resolved_.num_limited > 0 && resolved_.column[0] == 0) resolved_.limit[0] = limit_of_first(resolved_);
 }
 
@@ -151,12 +148,13 @@ void Agent::need_generation(const char* call, const Transition& t) {
 }
 
 void Agent::values(const float* obs, int32_t rows, float* value, float* cost) const {
-  const Options& o = resolved_.options;
+  const SharedOptions& o = resolved_.shared;
   need_no_update("values");
-  for (const char* key : {"normalize_reward", "normalize_cost"})
-    if (o.flag(key)) fail(Code::kUnsupported, "agent: with %s its critics have no fixed unit", key);
+  if (o.normalize_reward || o.normalize_cost)
+    fail(Code::kUnsupported, "agent: with %s its critics have no fixed unit",
+         o.normalize_reward ? "normalize_reward" : "normalize_cost");
   collector_.value_rows(obs, rows, value, cost);
-  const auto factor = static_cast<float>(o.number("reward_factor"));
+  const auto factor = static_cast<float>(o.reward_factor);
   for (int32_t i = 0; i < rows; ++i) value[i] /= factor;
 }
 
@@ -381,8 +379,8 @@ PolicyView Agent::policy_view() {
     v.shift = shift, v.scale = scale;
   }
   if (collector_.normalizes()) v.clip = n.clip, v.usual = collector_.usual().known();
-  v.action_repeat = resolved_.action_repeat;
-  v.noise_correlation = static_cast<float>(resolved_.options.number("noise_correlation"));
+  v.action_repeat = action_repeat();
+  v.noise_correlation = static_cast<float>(resolved_.shared.noise_correlation);
   v.control_dt = resolved_.config.control_dt;
   v.layout_hash = resolved_.config.layout_hash;
   v.generation = generation_of(nets_.kept_log_std());

@@ -70,7 +70,7 @@ class Agent {
   void values(const float* obs, int32_t rows, float* value, float* cost) const;
   int32_t num_limited() const { return resolved_.num_limited; }
   int32_t limited_column(int32_t i) const { return resolved_.column[i]; }
-  double discount() const { return resolved_.options.number("discount"); }
+  double discount() const { return resolved_.shared.discount; }
   // An update; in slices begin_update, then update_on with some units of work at a time until it is true, to
   // the same bytes. Until then the actor of before acts without noise and goes into policy files. A failure, a
   // cancel and discard leave the actor as it was; critics keep what finished minibatches taught them.
@@ -82,10 +82,10 @@ class Agent {
   void need_no_update(const char* call) const;  // Error(kState) between begin_update and its end
   // Decisions still missing in this horizon; 0: update is due.
   int32_t missing() const { return collector_.missing(); }
-  int32_t horizon() const { return resolved_.horizon; }
-  int32_t action_repeat() const { return resolved_.action_repeat; }
+  int32_t horizon() const { return resolved_.shared.horizon; }
+  int32_t action_repeat() const { return resolved_.shared.action_repeat; }
   // Rollouts take magnitudes in the place of costs: option cost_signal.
-  bool raw_costs() const { return raw_costs_; }
+  bool raw_costs() const { return resolved_.shared.raw_costs; }
   void drop_horizon();  // after a cancel: forget what was collected, and an update that has begun
   // From any state back to between epochs: without a begun horizon, and without a cancel that waits.
   void discard();
@@ -243,9 +243,8 @@ class Agent {
   Run run_;
   Learned learned_;
   uint64_t sampler_ = 0;  // generation() in this horizon, 0: nothing has asked yet
-  int32_t epoch_ = 0, warm_epochs_ = 0;
-  bool raw_costs_ = false;  // option cost_signal
-  bool warned_ = false;     // that a limit cannot be judged
+  int32_t epoch_ = 0;
+  bool warned_ = false;  // that a limit cannot be judged
   Regression regression_;
   Imitation imitation_;
   char (*names_)[kTensorNameSize] = nullptr;  // of the tensors

@@ -13,6 +13,7 @@
 #include <cstring>
 
 #include "algos/agent/agent.hpp"
+#include "algos/core/option_tables.hpp"
 #include "base/elementary.hpp"
 #include "base/error.hpp"
 #include "base/fpmode.hpp"
@@ -86,7 +87,7 @@ void Agent::unit(bool whole) {
         if (!job_) phase_ = Phase::kPass;
         break;
       case Phase::kPass:
-        if (learned_.passes < resolved_.options.integer("passes")) return begin_pass();
+        if (learned_.passes < resolved_.shared.passes) return begin_pass();
         phase_ = Phase::kSpread;
         break;
       case Phase::kMinibatch:
@@ -111,7 +112,7 @@ void Agent::unit(bool whole) {
         phase_ = Phase::kMinibatch;
         return;
       case Phase::kStop: {
-        const bool far = learner_.measured().kl > resolved_.options.number("early_stop_kl");
+        const bool far = learner_.measured().kl > resolved_.shared.early_stop_kl;
         phase_ = far ? Phase::kSpread : Phase::kPass;
         break;
       }
@@ -131,10 +132,10 @@ void Agent::judge_epoch() {
   run_ = Run();
   run_.stats = collector_.episodes().stats();
   run_.totals = collector_.totals();
-  run_.warm = epoch_ < warm_epochs_;
+  run_.warm = epoch_ < resolved_.shared.warm_epochs;
   run_.skipped = learner_.skipped();
   learned_ = Learned();
-  imitation_.begin_epoch(std::max(0, epoch_ - warm_epochs_));
+  imitation_.begin_epoch(std::max(0, epoch_ - resolved_.shared.warm_epochs));
   warn_of_limits(run_.stats);
   phase_ = valid_rows() > 0 ? Phase::kPass : Phase::kSpread;
   if (run_.warm) return;
@@ -156,7 +157,7 @@ void Agent::begin_pass() {
 
 // The next one of the pass that has rows.
 bool Agent::next_minibatch() {
-  const int32_t parts = std::min(resolved_.options.integer("minibatches"), valid_rows());
+  const int32_t parts = std::min(resolved_.shared.minibatches, valid_rows());
   while (run_.minibatch < parts) {
     run_.batch = collector_.minibatch(run_.minibatch++, parts);
     if (run_.batch.rows > 0) return true;
@@ -168,7 +169,7 @@ void Agent::end_pass(const PolicyLoss* policy) {
   run_.all += run_.last;
   ++learned_.passes;
   phase_ = Phase::kPass;
-  if (!policy || resolved_.options.number("early_stop_kl") <= 0) return;
+  if (!policy || resolved_.shared.early_stop_kl <= 0) return;
   job_ = learner_.begin_measure(whole_batch());
   phase_ = Phase::kStop;
 }
@@ -190,7 +191,7 @@ void Agent::end_update() {
   collector_.episodes().mark();
   collector_.close_usual();
   ++epoch_;
-  if (!warm) schedule_std(nets_, resolved_.options, epoch_);
+  if (!warm) schedule_std(nets_, resolved_.shared, epoch_);
   if (!warm) average_actor(nets_);
   end_run();  // whatever fails from here on, it is the next policy
   Epoch& e = run_.epoch;
@@ -245,11 +246,15 @@ void Agent::follow_reward() {
 
 double Agent::violation(const JudgedCosts& costs, int32_t i) const {
   const double gap = costs.known[i] ? costs.excess(i) : 0;
-  const char* scale = resolved_.options.text("violation_scale");
-  if (std::strcmp(scale, "raw") == 0) return gap;
-  if (std::strcmp(scale, "discount") == 0)
-    return gap * (1 - elementary::pow(resolved_.options.number("discount"), resolved_.action_repeat));
-  return gap / std::max(1.0, costs.steps[i] / resolved_.action_repeat);
+  switch (kViolationRows.read(resolved_.options).scale) {
+    case ViolationScale::kStep:
+      return gap / std::max(1.0, costs.steps[i] / action_repeat());
+    case ViolationScale::kDiscount:
+      return gap * (1 - elementary::pow(discount(), action_repeat()));
+    case ViolationScale::kRaw:
+      break;
+  }
+  return gap;
 }
 
 // Of the deviations that acted, some rows at a time; true when all are in.

@@ -23,19 +23,6 @@ void Learner::open(const ResolvedAgentConfig& resolved, const Rollout& rollout, 
   rollout_ = &rollout;
   nets_ = &nets;
   workers_ = &workers;
-  const Options& o = resolved.options;
-  learn_std_ = o.flag("learn_std") && std::strcmp(o.text("std_schedule"), "none") == 0;
-  follow_actor_ = std::strcmp(o.text("critic_lr_schedule"), "actor") == 0;
-}
-
-void Learner::read_live(const Options& o) {
-  critic_rate_ = o.number("critic_learning_rate");
-  if (critic_rate_ == 0) critic_rate_ = o.number("learning_rate");
-  entropy_ = o.number("entropy");
-  max_norm_ = o.number("max_grad_norm");
-  critic_l2_ = o.number("critic_l2");
-  joint_norm_ = o.flag("joint_grad_norm");
-  value_clip_ = static_cast<float>(o.number("value_clip"));
 }
 
 void Learner::refresh_log_std() {
@@ -135,7 +122,8 @@ void Learner::policy_gradient(Workspace& workspace, const PolicyLoss& policy, co
   const size_t dim = rollout_->action_dim;
   const bool state = nets_->state_std();
   for (size_t i = 0; state && i < static_cast<size_t>(rows); ++i)
-    std::fill_n(chunk.dlog_std_of(i), dim, policy.explores() ? -scale_ * static_cast<float>(entropy_) : 0.0f);
+    std::fill_n(chunk.dlog_std_of(i), dim,
+                policy.explores() ? -scale_ * static_cast<float>(shared().entropy) : 0.0f);
   policy.add(chunk);
   if (state) nets_->gate_std(workspace.out, rows, workspace.dout);
   nets_->backward_actor(workspace.obs, clouds, rows, workspace.actor, workspace.dout, grad);
@@ -150,15 +138,16 @@ double Learner::critic_gradient(Workspace& workspace, Networks::Index net, const
   const float* target = reward ? rollout_->target : rollout_->cost_target;
   const float* acted = reward ? rollout_->value : rollout_->cost_value;
   nets_->forward(net, workspace.obs, rows, workspace.critic, workspace.out);
+  const auto clip = static_cast<float>(shared().value_clip);
   double loss = 0;
   for (size_t i = 0; i < static_cast<size_t>(rows); ++i)
     for (size_t k = 0; k < out; ++k) {
       const size_t at = static_cast<size_t>(order[i]) * out + k;
       float error = workspace.out[i * out + k] - target[at], slope = 1;
-      if (value_clip_ > 0) {
+      if (clip > 0) {
         const float change = workspace.out[i * out + k] - acted[at];
-        const float held = acted[at] + std::clamp(change, -value_clip_, value_clip_) - target[at];
-        if (held * held > error * error) error = held, slope = std::abs(change) <= value_clip_ ? 1.0f : 0.0f;
+        const float held = acted[at] + std::clamp(change, -clip, clip) - target[at];
+        if (held * held > error * error) error = held, slope = std::abs(change) <= clip ? 1.0f : 0.0f;
       }
       workspace.dout[i * out + k] = 2 * scale_ * error * slope;
       loss += static_cast<double>(error) * static_cast<double>(error);
@@ -168,11 +157,11 @@ double Learner::critic_gradient(Workspace& workspace, Networks::Index net, const
 }
 
 void Learner::add_penalties() {
-  const auto bonus = policy_ && policy_->explores() ? static_cast<float>(entropy_) : 0.0f;
+  const auto bonus = policy_ && policy_->explores() ? static_cast<float>(shared().entropy) : 0.0f;
   for (size_t j = 0; policy_ && !nets_->state_std() && j < resolved_->action_dim(); ++j)
-    grad_[j] = learn_std_ ? grad_[j] - bonus : 0;
-  if (!critics_ || critic_l2_ == 0) return;
-  const auto twice = static_cast<float>(2 * critic_l2_);
+    grad_[j] = shared().learn_std && !shared().linear_std ? grad_[j] - bonus : 0;
+  if (!critics_ || shared().critic_l2 == 0) return;
+  const auto twice = static_cast<float>(2 * shared().critic_l2);
   const size_t first = nets_->block[Networks::kReward].offset;
   workers_->ranges(begin_, end_, [&](size_t low, size_t high) {
     for (size_t j = std::max(low, first); j < high; ++j) grad_[j] += twice * nets_->params[j];
@@ -185,14 +174,17 @@ double Learner::joint_scale(int32_t first, int32_t last) const {
   for (int32_t net = first; net < last; ++net)
     squares +=
         dot(grad_ + nets_->block[net].offset, grad_ + nets_->block[net].offset, nets_->block[net].size);
-  return max_norm_ > 0 ? std::min(1.0, max_norm_ / (std::sqrt(squares) + 1e-6)) : 1;
+  const double bound = shared().max_grad_norm;
+  return bound > 0 ? std::min(1.0, bound / (std::sqrt(squares) + 1e-6)) : 1;
 }
 
 void Learner::step(double actor_rate, double actor_share) {
   const int32_t first = first_net_, last = last_net_;
-  const double critic_rate = follow_actor_ ? critic_rate_ * actor_share : critic_rate_;
-  double bound = max_norm_;
-  if (joint_norm_) {
+  const SharedOptions& o = shared();
+  const double own_rate = o.critic_learning_rate == 0 ? o.learning_rate : o.critic_learning_rate;
+  const double critic_rate = o.critics_follow ? own_rate * actor_share : own_rate;
+  double bound = o.max_grad_norm;
+  if (o.joint_grad_norm) {
     const double scale = joint_scale(first, last);
     for (size_t j = begin_; std::isfinite(scale) && scale < 1 && j < end_; ++j)
       grad_[j] = static_cast<float>(scale * static_cast<double>(grad_[j]));

@@ -65,7 +65,6 @@ class Learner {
   // All must outlive the learner.
   void open(const ResolvedAgentConfig& resolved, const Rollout& rollout, Networks& nets,
             BatchWorkers& workers);
-  void read_live(const Options& options);
 
   // Gradients of mean loss over the listed rows: the policy's (null: none) less the entropy bonus, and, if
   // asked, the critics' squared errors with their L2 term. When the job is done they are in gradient(), what
@@ -99,6 +98,7 @@ class Learner {
   void visit(StateIo& io);
 
  private:
+  const SharedOptions& shared() const { return resolved_->shared; }
   void refresh_log_std();
   // The policy at the outputs that a workspace holds; its derivatives go to the workspace's and to grad.
   PolicyChunk chunk_of(Workspace& workspace, const int32_t* order, int32_t rows, float* grad) const;
@@ -138,9 +138,6 @@ class Learner {
   BatchSums sums_;
   Surrogate measured_;
 
-  bool learn_std_ = true, joint_norm_ = false, follow_actor_ = false;
-  float value_clip_ = 0;
-  double critic_rate_ = 0, entropy_ = 0, max_norm_ = 0, critic_l2_ = 0;
   int64_t skipped_ = 0;
   Imitation* imitation_ = nullptr;
 };

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 
 #include "base/elementary.hpp"
 
@@ -47,10 +46,10 @@ Networks carve_networks(Arena& arena, const ResolvedAgentConfig& resolved) {
   n.count = resolved.num_limited > 0 ? 3 : 2;
   n.action_dim = resolved.config.action_dim;
   n.std_size = resolved.state_std() ? 0 : (resolved.action_dim() + 15) / 16 * 16;
-  n.std_low = static_cast<float>(elementary::log(resolved.options.number("std_min")));
-  n.std_high = static_cast<float>(elementary::log(resolved.options.number("std_max")));
+  n.std_low = static_cast<float>(elementary::log(resolved.shared.std_min));
+  n.std_high = static_cast<float>(elementary::log(resolved.shared.std_max));
   n.log_share = resolved.log_share;
-  n.input_bound = resolved.options.flag("normalize_obs") ? resolved.options.number("obs_clip") : 1e3;
+  n.input_bound = resolved.shared.normalize_obs ? resolved.shared.obs_clip : 1e3;
   for (int32_t i = 0; i < n.count; ++i) {
     n.block[i].offset = n.size;
     n.block[i].size = n.shape[i].num_params();
@@ -59,7 +58,7 @@ Networks carve_networks(Arena& arena, const ResolvedAgentConfig& resolved) {
   }
   n.params = arena.make<float>(n.size);
   n.before = arena.make<float>(n.block[Networks::kActor].size);
-  n.average_share = resolved.options.number("average");
+  n.average_share = resolved.shared.average;
   if (n.average_share > 0) {
     n.average = arena.make<float>(n.block[Networks::kActor].size);
     n.averaged = arena.make<int64_t>(1);
@@ -128,10 +127,9 @@ void Networks::tangent_actor(const float* direction, const float* x, const Point
 }
 
 void init_networks(const Networks& n, const ResolvedAgentConfig& resolved) {
-  const Options& o = resolved.options;
   for (int32_t i = 0; i < n.count; ++i) {
     Stream stream(resolved.config.seed, static_cast<uint32_t>(i), Purpose::kInit);
-    const double last = i == Networks::kActor ? o.number("last_layer_scale") : 1;
+    const double last = i == Networks::kActor ? resolved.shared.last_layer_scale : 1;
     mlp_init(n.shape[i], stream, static_cast<float>(last), n.net(i));
   }
   if (n.eyes.points) {
@@ -143,7 +141,7 @@ void init_networks(const Networks& n, const ResolvedAgentConfig& resolved) {
   float* log_std = n.state_std() ? bias + n.action_dim : n.log_std();
   for (int32_t j = 0; j < n.action_dim; ++j) {
     bias[j] = resolved.config.initial_mean ? resolved.config.initial_mean[j] : 0;
-    log_std[j] = static_cast<float>(elementary::log(o.number("init_std")));
+    log_std[j] = static_cast<float>(elementary::log(resolved.shared.init_std));
   }
 }
 
@@ -192,10 +190,10 @@ void Networks::gate_std(const float* y, int32_t rows, float* dy) const {
       if (!(y[i * out + j] > low && y[i * out + j] < high)) dy[i * out + j] = 0;
 }
 
-void schedule_std(const Networks& n, const Options& o, int32_t done) {
-  if (std::strcmp(o.text("std_schedule"), "linear") != 0) return;
-  const double left = std::max(0.0, 1 - static_cast<double>(done) / o.integer("total_epochs"));
-  const double std = o.number("std_min") + (o.number("init_std") - o.number("std_min")) * left;
+void schedule_std(const Networks& n, const SharedOptions& o, int32_t done) {
+  if (!o.linear_std) return;
+  const double left = std::max(0.0, 1 - static_cast<double>(done) / o.total_epochs);
+  const double std = o.std_min + (o.init_std - o.std_min) * left;
   for (int32_t j = 0; j < n.action_dim; ++j) n.log_std()[j] = static_cast<float>(elementary::log(std));
 }
 

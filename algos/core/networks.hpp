@@ -130,7 +130,7 @@ void restart_average(const Networks& n);
 void keep_actor(const Networks& n);
 void restore_actor(const Networks& n);
 // With std_schedule=linear the deviation for the epoch that follows `done` finished ones.
-void schedule_std(const Networks& n, const Options& options, int32_t done);
+void schedule_std(const Networks& n, const SharedOptions& options, int32_t done);
 
 inline constexpr int32_t kTensorNameSize = 32;
 // Tensor `index` in the order above, names "actor.log_std", "actor.0.weight", "cost_critic.2.bias".

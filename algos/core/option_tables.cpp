@@ -169,16 +169,16 @@ void lay_default(Options& o, const AlgoInfo& algo, OptionInput in) {
 }
 
 void lay_preset(Options& o, const AgentConfig& config, const char* algo) {
-  const char* preset = o.text("preset");
+  const SharedOptions below = kSharedRows.read(o);
+  // Without the length of an episode there is nothing to charge.
+  const bool length = config.max_steps > 0 || below.episode_steps > 0;
   for (const PresetValue& v : kPresetValues) {
-    // Without the length of an episode there is nothing to charge.
-    const bool length = config.max_steps > 0 || o.integer("episode_steps") > 0;
     if (same_name(v.key, "terminal_cost") && !length) continue;
     if (v.algos && !among(v.algos, algo)) continue;
-    if (same_name(v.preset, preset) && o.knows(v.key)) o.set_default(v.key, v.text);
+    if (same_name(v.preset, below.preset) && o.knows(v.key)) o.set_default(v.key, v.text);
   }
-  if (same_name(preset, "omnisafe")) {
-    const int64_t rows = int64_t{o.integer("horizon")} * config.num_envs;
+  if (same_name(below.preset, "omnisafe")) {
+    const int64_t rows = int64_t{kSharedRows.read(o).horizon} * config.num_envs;
     const int64_t size = among(kTrustRegion, algo) ? 128 : 64;
     o.set_default("minibatches", static_cast<double>(std::clamp<int64_t>(rows / size, 1, 1 << 20)));
   }
@@ -200,7 +200,7 @@ Options read_options(const AgentConfig& config, const AlgoInfo& algo) {
   for (int32_t i = 0; i < config.num_defaults; ++i) lay_default(o, algo, config.defaults[i]);
   lay_preset(o, config, algo.name);
   // A schedule that nobody asked for gives way.
-  if (same_name(o.text("std_mode"), "state")) o.set_default("std_schedule", "none");
+  if (kSharedRows.read(o).state_std) o.set_default("std_schedule", "none");
   return o;
 }
 

@@ -44,7 +44,7 @@ void RankSetup::carve(Arena& arena, const ResolvedAgentConfig& resolved) {
   number("version", c.ranks.version);
   other("algo", hash_of(c.algo));
   number("num_envs", c.num_envs);
-  number("horizon", resolved.horizon);
+  number("horizon", resolved.shared.horizon);
   number("seed", static_cast<int64_t>(c.seed));
   number("obs_dim", c.obs_dim);
   number("action_dim", c.action_dim);

@@ -70,43 +70,43 @@ void check_config(const AgentConfig& c) {
     if (!std::isfinite(c.cost_limits[i])) fail(Code::kArgument, "cost_limits[%d] is not finite", i);
 }
 
-Activation activation_of(const char* name) {
-  if (std::strcmp(name, "elu") == 0) return Activation::kElu;
-  return std::strcmp(name, "relu") == 0 ? Activation::kRelu : Activation::kTanh;
-}
-
 // "64,64" into widths; blanks are skipped.
-MlpShape parse_shape(const Options& o, const char* key, int32_t in, int32_t out,
-                     const char* activation = "activation") {
+MlpShape parse_shape(const char* key, const char* widths, Activation activation, int32_t in, int32_t out) {
   MlpShape s;
   s.in = in;
   s.out = out;
-  s.activation = activation_of(o.text(activation));
-  const char* p = o.text(key);
+  s.activation = activation;
+  const char* p = widths;
   while (*p == ' ') ++p;
   while (*p) {
     char* end = nullptr;
     const long width = std::strtol(p, &end, 10);
     while (*end == ' ') ++end;
     if (end == p || (*end && *end != ','))
-      fail(Code::kArgument, "%s: '%s' is not a list of widths such as 64,64", key, Quoted(o.text(key)).text);
+      fail(Code::kArgument, "%s: '%s' is not a list of widths such as 64,64", key, Quoted(widths).text);
     if (s.num_hidden == kMaxHidden) fail(Code::kRange, "%s: more than %d layers", key, kMaxHidden);
     check_range(key, width, 1, kMaxWidth);
     s.hidden[s.num_hidden++] = static_cast<int32_t>(width);
     p = *end ? end + 1 : end;
-    if (*end && !*p) fail(Code::kArgument, "%s: '%s' ends in a comma", key, Quoted(o.text(key)).text);
+    if (*end && !*p) fail(Code::kArgument, "%s: '%s' ends in a comma", key, Quoted(widths).text);
   }
   return s;
 }
 
-void resolve_costs(ResolvedAgentConfig& resolved) {
-  AgentConfig& c = resolved.config;
-  Options& o = resolved.options;
-  resolved.episode_steps = o.integer("episode_steps") > 0 ? o.integer("episode_steps") : c.max_steps;
-  if (o.number("cost_limit_per_step") >= 0)
-    resolved.rate_steps = resolved.episode_steps > 0 ? resolved.episode_steps : kRateSteps;
+// The values of all options, the task's limit on column 0 among the defaults.
+Options read_limited_options(const AgentConfig& c, const AlgoInfo& algo) {
+  Options o = read_options(c, algo);
   if (c.cost_limits && c.cost_dim > 0 && !o.given("cost_limit"))
     o.set_default("cost_limit", c.cost_limits[0] < 0 ? -1.0 : c.cost_limits[0]);
+  return o;
+}
+
+void resolve_costs(ResolvedAgentConfig& resolved) {
+  const AgentConfig& c = resolved.config;
+  const SharedOptions& o = resolved.shared;
+  resolved.episode_steps = o.episode_steps > 0 ? o.episode_steps : c.max_steps;
+  if (o.cost_limit_per_step >= 0)
+    resolved.rate_steps = resolved.episode_steps > 0 ? resolved.episode_steps : kRateSteps;
   if (resolved.row->costs == Costs::kNone) return;
   for (int32_t k = 0; k < c.cost_dim; ++k) {
     const double limit = k == 0 ? limit_of_first(resolved) : c.cost_limits ? c.cost_limits[k] : -1;
@@ -118,7 +118,7 @@ void resolve_costs(ResolvedAgentConfig& resolved) {
     fail(Code::kArgument, "cost_limits: %s needs at least one cost column with a limit",
          resolved.row->info.name);
   if (resolved.row->costs == Costs::kOne && resolved.num_limited > 1 &&
-      std::strcmp(o.text("several_costs"), "worst") != 0)
+      !kOneCostRows.read(resolved.options).worst)
     fail(Code::kUnsupported,
          "cost_limits: %s is defined for one limited cost, %d have limits; several_costs=worst follows the "
          "most "
@@ -141,47 +141,50 @@ void parse_origin(const char* text, float (&origin)[3]) {
 }
 
 void resolve_eyes(ResolvedAgentConfig& resolved) {
-  const Options& o = resolved.options;
+  const SharedOptions& o = resolved.shared;
   PointNetShape eyes;
-  eyes.classes = o.integer("encoder_classes");
-  eyes.color = o.flag("encoder_color");
-  eyes.mlp = parse_shape(o, "encoder", eyes.channels(), 0, "encoder_activation");
+  eyes.classes = o.encoder_classes;
+  eyes.color = o.encoder_color;
+  eyes.mlp = parse_shape("encoder", o.encoder, o.encoder_activation, eyes.channels(), 0);
   if (eyes.mlp.num_hidden == 0) return;
   int32_t& last = eyes.mlp.hidden[--eyes.mlp.num_hidden];
   eyes.mlp.out = last, last = 0;
-  eyes.points = o.integer("encoder_points");
-  eyes.range = static_cast<float>(o.number("encoder_range"));
-  parse_origin(o.text("encoder_origin"), eyes.origin);
+  eyes.points = o.encoder_points;
+  eyes.range = static_cast<float>(o.encoder_range);
+  parse_origin(o.encoder_origin, eyes.origin);
   check_pointnet_shape(eyes);
   resolved.eyes = eyes;
-  resolved.frozen = o.flag("encoder_frozen");
+  resolved.frozen = o.encoder_frozen;
 }
 
 void resolve_networks(ResolvedAgentConfig& resolved) {
   const AgentConfig& c = resolved.config;
-  const Options& o = resolved.options;
-  const char* critic = *o.text("critic_hidden") ? "critic_hidden" : "hidden";
-  const int32_t outputs = std::strcmp(o.text("std_mode"), "state") == 0 ? 2 : 1;
-  const auto columns = [&](const char* key) {
-    return select_columns(key, o.text(key), c.fields, c.num_fields, c.obs_dim);
+  const SharedOptions& o = resolved.shared;
+  const auto columns = [&](const char* key, const char* words) {
+    return select_columns(key, words, c.fields, c.num_fields, c.obs_dim);
   };
   const auto inputs = [&](const Vector<int32_t>& seen) {
     return seen.empty() ? c.obs_dim : static_cast<int32_t>(seen.size());
   };
-  resolved.actor_columns = columns("actor_obs");
-  resolved.critic_columns = columns("critic_obs");
+  resolved.actor_columns = columns("actor_obs", o.actor_obs);
+  resolved.critic_columns = columns("critic_obs", o.critic_obs);
   const int32_t actor_in = inputs(resolved.actor_columns), critic_in = inputs(resolved.critic_columns);
   resolve_eyes(resolved);
-  resolved.actor = parse_shape(o, "hidden", actor_in + resolved.eyes.features(), outputs * c.action_dim);
-  resolved.reward_critic = parse_shape(o, critic, critic_in, 1);
-  resolved.cost_critic = parse_shape(o, critic, critic_in, std::max(resolved.num_limited, 1));
+  const auto critic = [&](int32_t outputs) {
+    return *o.critic_hidden ? parse_shape("critic_hidden", o.critic_hidden, o.activation, critic_in, outputs)
+                            : parse_shape("hidden", o.hidden, o.activation, critic_in, outputs);
+  };
+  resolved.actor = parse_shape("hidden", o.hidden, o.activation, actor_in + resolved.eyes.features(),
+                               o.state_std ? 2 * c.action_dim : c.action_dim);
+  resolved.reward_critic = critic(1);
+  resolved.cost_critic = critic(std::max(resolved.num_limited, 1));
   check_mlp_shape(resolved.actor);
   check_mlp_shape(resolved.reward_critic);
 }
 
 // Blocks of all ranks into this one's.
 void resolve_blocks(ResolvedAgentConfig& resolved) {
-  const int32_t blocks = resolved.options.integer("blocks"), ranks = resolved.config.ranks.count;
+  const int32_t blocks = resolved.shared.blocks, ranks = resolved.config.ranks.count;
   const int32_t envs = resolved.all_envs(), own = blocks / ranks;
   if (envs % blocks != 0) fail(Code::kArgument, "blocks: %d do not divide %d environments", blocks, envs);
   if (blocks % ranks != 0 || (ranks > 1 && (own & (own - 1)) != 0))
@@ -191,17 +194,15 @@ void resolve_blocks(ResolvedAgentConfig& resolved) {
 }
 
 void resolve_batches(ResolvedAgentConfig& resolved) {
-  const Options& o = resolved.options;
-  resolved.horizon = o.integer("horizon");
-  resolved.action_repeat = o.integer("action_repeat");
-  const int64_t samples = int64_t{resolved.horizon} * resolved.config.num_envs;
+  const SharedOptions& o = resolved.shared;
+  const int64_t samples = int64_t{o.horizon} * resolved.config.num_envs;
   const int32_t ranks = resolved.config.ranks.count;
   if (samples * ranks > kMaxSamples)
-    fail(Code::kRange, "horizon: %d decisions of %d environments are more than %lld samples",
-         resolved.horizon, resolved.all_envs(), static_cast<long long>(kMaxSamples));
+    fail(Code::kRange, "horizon: %d decisions of %d environments are more than %lld samples", o.horizon,
+         resolved.all_envs(), static_cast<long long>(kMaxSamples));
   resolved.samples = static_cast<int32_t>(samples);
   resolve_blocks(resolved);
-  const int32_t parts = std::min(o.integer("minibatches"), resolved.all_samples());
+  const int32_t parts = std::min(o.minibatches, resolved.all_samples());
   const int32_t block_samples = resolved.samples / resolved.blocks;
   const int32_t block_rows = (block_samples + parts - 1) / parts;
   resolved.minibatch_rows = block_rows * resolved.blocks;
@@ -212,38 +213,41 @@ void resolve_batches(ResolvedAgentConfig& resolved) {
   const int32_t chunks = (block_rows + resolved.chunk_rows - 1) / resolved.chunk_rows * resolved.blocks;
   const int32_t acting = (resolved.config.num_envs + resolved.chunk_rows - 1) / resolved.chunk_rows;
   resolved.workers = std::clamp(resolved.config.num_threads, 1, std::max(chunks, acting));
-  const double rho = o.number("noise_correlation");
+  const double rho = o.noise_correlation;
   resolved.log_share = static_cast<float>(0.5 * elementary::log1p(-rho * rho));
 }
 
 void check_pairs(const ResolvedAgentConfig& resolved) {
-  const Options& o = resolved.options;
-  if (o.number("std_min") > o.number("std_max")) fail(Code::kRange, "std_min: above std_max");
-  if (o.number("init_std") < o.number("std_min") || o.number("init_std") > o.number("std_max"))
-    fail(Code::kRange, "init_std: %g is outside [std_min, std_max]", o.number("init_std"));
-  if (std::strcmp(o.text("std_mode"), "state") == 0) {
-    if (!o.flag("learn_std") || std::strcmp(o.text("std_schedule"), "none") != 0)
+  const SharedOptions& o = resolved.shared;
+  if (o.std_min > o.std_max) fail(Code::kRange, "std_min: above std_max");
+  if (o.init_std < o.std_min || o.init_std > o.std_max)
+    fail(Code::kRange, "init_std: %g is outside [std_min, std_max]", o.init_std);
+  if (o.state_std) {
+    if (!o.learn_std || o.linear_std)
       fail(Code::kUnsupported, "std_mode: state is for a deviation that is learned, without a schedule");
-    if (o.number("init_std") <= o.number("std_min") || o.number("init_std") >= o.number("std_max"))
+    if (o.init_std <= o.std_min || o.init_std >= o.std_max)
       fail(Code::kRange, "init_std: at a bound, where std_mode=state has no gradient");
   }
-  if (o.number("lr_min") > o.number("lr_max")) fail(Code::kRange, "lr_min: above lr_max");
-  if (o.flag("terminal_cost") && resolved.episode_steps <= 0)
+  if (o.lr_min > o.lr_max) fail(Code::kRange, "lr_min: above lr_max");
+  if (o.terminal_cost && resolved.episode_steps <= 0)
     fail(Code::kArgument, "terminal_cost: needs max_steps, which is unknown (0), or option episode_steps");
 }
 
 }  // namespace
 
+void ResolvedAgentConfig::read_shared() {
+  shared = kSharedRows.read(options);
+}
+
 double limit_of_first(const ResolvedAgentConfig& resolved) {
-  const Options& o = resolved.options;
-  return resolved.rate_steps > 0 ? o.number("cost_limit_per_step") * resolved.rate_steps
-                                 : o.number("cost_limit");
+  const SharedOptions& o = resolved.shared;
+  return resolved.rate_steps > 0 ? o.cost_limit_per_step * resolved.rate_steps : o.cost_limit;
 }
 
 ResolvedAgentConfig resolve_config(const AgentConfig& config) {
   check_config(config);
   const AlgoRow& row = algo_row(algo_find(config.algo));
-  ResolvedAgentConfig resolved(config, read_options(config, row.info), row);
+  ResolvedAgentConfig resolved(config, read_limited_options(config, row.info), row);
   std::snprintf(resolved.task, sizeof resolved.task, "%s", config.task ? config.task : "");
   resolved.config.algo = row.info.name;
   resolve_costs(resolved);

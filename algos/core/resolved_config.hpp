@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "algos/core/agent_types.hpp"
+#include "algos/core/shared_options.hpp"
 #include "nn/pointnet.hpp"
 
 namespace rdm {
@@ -12,11 +13,15 @@ struct AlgoRow;
 
 struct ResolvedAgentConfig {
   ResolvedAgentConfig(const AgentConfig& c, Options&& o, const AlgoRow& r)
-      : config(c), options(std::move(o)), row(&r) {}
+      : config(c), options(std::move(o)), row(&r) {
+    read_shared();
+  }
+  void read_shared();  // after a change of the options
 
   AgentConfig config;  // scalars and names stay valid, arrays only until the agent is made
   char task[kOptionTextSize] = "";
   Options options;
+  SharedOptions shared;
   const AlgoRow* row;
 
   MlpShape actor, reward_critic, cost_critic;  // cost_critic.out = num_limited
@@ -31,7 +36,6 @@ struct ResolvedAgentConfig {
   int32_t episode_steps = 0;       // control steps after which an episode is counted as ended; 0: never
   int32_t rate_steps = 0;          // > 0: column 0 is limited per control step, as a sum over so many
 
-  int32_t horizon = 0, action_repeat = 0;
   int32_t samples = 0;         // num_envs * horizon
   int32_t blocks = 1;          // this rank's
   int32_t minibatch_rows = 0;  // this rank's of the largest minibatch

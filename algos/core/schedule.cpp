@@ -1,49 +1,39 @@
 #include "algos/core/schedule.hpp"
 
 #include <algorithm>
-#include <cstring>
 
 #include "algos/core/option_tables.hpp"
 
 namespace rdm {
 
-void RateSchedule::reset(const Options& o) {
-  const char* kind = o.text("lr_schedule");
-  kind_ = std::strcmp(kind, "linear") == 0 ? Kind::kLinear
-          : std::strcmp(kind, "kl") == 0   ? Kind::kKl
-                                           : Kind::kConstant;
+void RateSchedule::open(const SharedOptions& o) {
+  o_ = &o;
   base_ = -1;
-  read_live(o);
+  read_live();
 }
 
-void RateSchedule::read_live(const Options& o) {
-  if (const double rate = o.number("learning_rate"); rate != base_) base_ = adapted_ = rate;
-  total_ = o.integer("total_epochs");
-  target_ = o.number("kl_target");
-  target_end_ = o.number("kl_target_end");
-  if (target_end_ == 0) target_end_ = target_;
-  factor_ = o.number("kl_factor");
-  low_ = o.number("lr_min");
-  high_ = o.number("lr_max");
+void RateSchedule::read_live() {
+  if (o_->learning_rate != base_) base_ = adapted_ = o_->learning_rate;
 }
 
 double RateSchedule::share(int32_t done) const {
-  return kind_ == Kind::kLinear ? std::max(0.0, 1 - static_cast<double>(done) / total_) : 1;
+  return o_->rate_kind == RateKind::kLinear ? std::max(0.0, 1 - static_cast<double>(done) / o_->total_epochs)
+                                            : 1;
 }
 
 double RateSchedule::rate(int32_t done) const {
-  if (kind_ == Kind::kLinear) return base_ * share(done);
-  return kind_ == Kind::kKl ? adapted_ : base_;
+  return o_->rate_kind == RateKind::kKl ? adapted_ : base_ * share(done);
 }
 
 void RateSchedule::adapt(double kl, int32_t done) {
-  if (kind_ != Kind::kKl) return;
-  const double passed = std::min(1.0, static_cast<double>(done) / total_);
-  const double target = target_ + passed * (target_end_ - target_);
+  if (o_->rate_kind != RateKind::kKl) return;
+  const double passed = std::min(1.0, static_cast<double>(done) / o_->total_epochs);
+  const double end = o_->kl_target_end > 0 ? o_->kl_target_end : o_->kl_target;
+  const double target = o_->kl_target + passed * (end - o_->kl_target);
   if (kl > 2 * target)
-    adapted_ = std::max(low_, adapted_ / factor_);
+    adapted_ = std::max(o_->lr_min, adapted_ / o_->kl_factor);
   else if (kl < target / 2)
-    adapted_ = std::min(high_, adapted_ * factor_);
+    adapted_ = std::min(o_->lr_max, adapted_ * o_->kl_factor);
 }
 
 void RateSchedule::visit(StateIo& io) {

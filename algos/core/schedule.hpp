@@ -1,14 +1,14 @@
 // The actor's learning rate from epoch to epoch: constant, falling linearly, or adapted to the KL.
 #pragma once
+#include "algos/core/shared_options.hpp"
 #include "algos/core/state_io.hpp"
-#include "base/option.hpp"
 
 namespace rdm {
 
 class RateSchedule {
  public:
-  void reset(const Options& options);
-  void read_live(const Options& options);
+  void open(const SharedOptions& options);  // which must outlive it
+  void read_live();
   // Rate of the epoch that follows `done` finished ones.
   double rate(int32_t done) const;
   // The linear schedule's share of the rate at that time; 1 with others.
@@ -20,10 +20,8 @@ class RateSchedule {
   void visit(StateIo& io);
 
  private:
-  enum class Kind { kConstant, kLinear, kKl } kind_ = Kind::kConstant;
+  const SharedOptions* o_ = nullptr;
   double base_ = 0, adapted_ = 0;
-  double target_ = 0, target_end_ = 0, factor_ = 1, low_ = 0, high_ = 0;
-  int32_t total_ = 1;
 };
 
 }  // namespace rdm

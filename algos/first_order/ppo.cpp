@@ -1,7 +1,6 @@
 #include "algos/first_order/ppo.hpp"
 
 #include "algos/algo_registry.hpp"
-#include "algos/core/option_tables.hpp"
 
 namespace rdm {
 
@@ -14,11 +13,8 @@ SampleLoss clipped_loss(float ratio, float gain, float linear, float clip) {
   return out;
 }
 
-namespace {
-constexpr auto kPpoTable = join_options(kSharedOptions, kClipOptions);
-}
 constinit const AlgoRow kPpo = make_algo_row<Ppo>(
-    "ppo", "Proximal policy optimisation, clipped (Schulman et al. 2017); costs are recorded only", kPpoTable,
+    "ppo", "Proximal policy optimisation, clipped (Schulman et al. 2017); costs are recorded only", kPpoRows,
     Costs::kNone);
 
 }  // namespace rdm

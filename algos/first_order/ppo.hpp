@@ -6,6 +6,7 @@
 // on the gradient's norm, a rate that may follow the KL (lr_schedule=kl), passes that may stop early by it.
 #pragma once
 #include "algos/agent/agent.hpp"
+#include "algos/core/option_tables.hpp"
 #include "algos/first_order/ratio_loss.hpp"
 
 namespace rdm {
@@ -23,6 +24,15 @@ class ClippedSurrogate final : public RatioLoss {
   }
 };
 
+struct ClipOptions {
+  double clip;
+};
+inline constexpr auto kClipRows = option_rows<ClipOptions>(row<&ClipOptions::clip>(
+    basic(number_option("clip", 0.2, 1e-6, 10, "bound on the change of the probability ratio", true))));
+// Of PPO, and what tables of algorithms on its step begin with.
+struct PpoOptions : SharedOptions, ClipOptions {};
+inline constexpr auto kPpoRows = option_rows<PpoOptions>(kSharedRows, kClipRows);
+
 class Ppo : public Agent {
  public:
   explicit Ppo(ResolvedAgentConfig&& resolved) : Agent(std::move(resolved)) {}
@@ -31,8 +41,9 @@ class Ppo : public Agent {
   const PolicyLoss* policy_loss() const override { return &loss_; }
   void read_live() override {
     Agent::read_live();
-    loss_.clip = static_cast<float>(options().number("clip"));
+    loss_.clip = static_cast<float>(kClipRows.read(options()).clip);
   }
+  float clip() const { return loss_.clip; }
 
  private:
   ClippedSurrogate loss_;

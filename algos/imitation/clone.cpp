@@ -1,7 +1,6 @@
 #include "algos/imitation/clone.hpp"
 
 #include <cmath>
-#include <cstring>
 
 #include "algos/imitation/need.hpp"
 #include "base/elementary.hpp"
@@ -22,8 +21,7 @@ void check(const ResolvedAgentConfig& resolved, const DemoRows& demo, const Clon
   need("validation", how.validation, 0, 0.9);
   need("capacity", how.capacity, 0, 1 << 30);
   if (how.action_std != 0) {
-    need("action_std", how.action_std, resolved.options.number("std_min"),
-         resolved.options.number("std_max"));
+    need("action_std", how.action_std, resolved.shared.std_min, resolved.shared.std_max);
     if (resolved.state_std())
       fail(Code::kUnsupported, "action_std: with std_mode=state the deviation is the network's; 0 leaves it");
   }
@@ -114,7 +112,7 @@ CloneReport clone_actor(const ResolvedAgentConfig& resolved, const DemoRows& giv
   try {
     out.train_rows = split(demo, how.validation, stream, order);
     out.validation_rows = demo.rows - out.train_rows;
-    if (how.feed_normalizer) feed(normalizer, demo, resolved.options.number("obs_count_max"));
+    if (how.feed_normalizer) feed(normalizer, demo, resolved.shared.obs_count_max);
     for (int32_t e = 0; e < how.epochs; ++e) {
       const double done = how.epochs > 1 ? static_cast<double>(e) / (how.epochs - 1) : 0;
       const double rate = how.learning_rate + done * (how.learning_rate_end - how.learning_rate);

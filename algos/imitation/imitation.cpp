@@ -10,11 +10,6 @@ void Imitation::open(const ResolvedAgentConfig& resolved, const Regression& regr
   stream_ = Stream(resolved.config.seed, 0, Purpose::kImitation);
 }
 
-void Imitation::read_live(const Options& options) {
-  base_ = options.number("imitation");
-  decay_ = options.number("imitation_decay");
-}
-
 void Imitation::set(const DemoRows& demo, uint64_t mark, const HostHooks& hooks) {
   const HostScope scope(hooks);
   const auto n = static_cast<size_t>(demo.rows);
@@ -37,7 +32,8 @@ void Imitation::set(const DemoRows& demo, uint64_t mark, const HostHooks& hooks)
 }
 
 void Imitation::begin_epoch(int32_t done) {
-  weight_ = has_rows() ? base_ * elementary::pow(decay_, done) : 0;
+  const SharedOptions& o = resolved_->shared;
+  weight_ = has_rows() ? o.imitation * elementary::pow(o.imitation_decay, done) : 0;
   rows_ = 0;
 }
 

@@ -15,12 +15,11 @@ namespace rdm {
 class Imitation {
  public:
   void open(const ResolvedAgentConfig& resolved, const Regression& regression);
-  void read_live(const Options& options);
 
   // Copies the rows; rows 0: none. The mark tells recordings apart.
   void set(const DemoRows& demo, uint64_t mark, const HostHooks& hooks);
   bool has_rows() const { return demo_.rows > 0; }
-  bool wanted() const { return base_ > 0; }
+  bool wanted() const { return resolved_->shared.imitation > 0; }
 
   // The weight of an epoch, `done` ones after the actor began to learn.
   void begin_epoch(int32_t done);
@@ -46,7 +45,7 @@ class Imitation {
   DemoRows demo_;
   uint64_t mark_ = 0;
   Stream stream_;
-  double base_ = 0, decay_ = 1, weight_ = 0;
+  double weight_ = 0;
   int32_t rows_ = 0;  // drawn
   Fit fit_;
 };

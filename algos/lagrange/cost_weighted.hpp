@@ -1,8 +1,18 @@
 // Safe methods that only weigh costs against the reward = a policy step x a rule for the weights.
 #pragma once
 #include "algos/agent/agent.hpp"
+#include "base/option_rows.hpp"
 
 namespace rdm {
+
+// Where the cost part of a combined advantage stands.
+struct SplitOptions {
+  bool split;
+};
+inline constexpr auto kSplitRows =
+    option_rows<SplitOptions>(row<&SplitOptions::split, false, true>(legacy(text_option(
+        "cost_loss", "combined", "combined|split",
+        "combined: (A_r - l A_c)/(1 + l), clipped; split: cost part unclipped, as Ray et al. have it"))));
 
 // Base: an Agent. Rule: made from a ResolvedAgentConfig; step(costs, epoch) once per epoch
 // before the policy step, then weight(i) of limited cost i, mix(), split(), read_live(options), visit(io).

@@ -6,21 +6,24 @@
 
 namespace rdm {
 
+struct PidRuleOptions : PidOptions {
+  Mix mix = Mix::kSum;
+};
+
 class PidRule {
  public:
   explicit PidRule(const ResolvedAgentConfig& resolved);
   // Each by its fresh cost; not without one.
   void step(const JudgedCosts& costs, int32_t epoch);
   double weight(int32_t i) const { return pid_[i].value(); }
-  Mix mix() const { return mix_; }
+  Mix mix() const { return options_.mix; }
   bool split() const { return false; }
   void read_live(const Options& options);
   void visit(StateIo& io);
 
  private:
-  PidOptions options_;
+  PidRuleOptions options_;
   Pid pid_[kMaxCosts];
-  Mix mix_ = Mix::kSum;
   int32_t count_ = 0;
 };
 

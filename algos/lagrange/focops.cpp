@@ -8,6 +8,19 @@
 #include "nn/gaussian.hpp"
 
 namespace rdm {
+namespace {
+
+constexpr double kPaperBound = 2;  // on nu
+
+constexpr auto kOwnRows = option_rows<FocopsOwnOptions>(
+    row<&FocopsOwnOptions::temperature>(
+        number_option("temperature", 1.5, 1e-6, 1e6, "lambda of the paper, fixed", true)),
+    row<&FocopsOwnOptions::eta>(basic(number_option(
+        "focops_eta", 0.02, 0, 1e6, "samples whose KL(new || old) is above this teach nothing", true))),
+    row<&FocopsOwnOptions::divide>(
+        legacy(flag_option("multiplier_divide", false, "advantage over (1 + nu), as a peer has it"))));
+
+}  // namespace
 
 void FocopsLoss::add(const PolicyChunk& chunk) const {
   const Rollout& r = *chunk.rollout;
@@ -47,14 +60,15 @@ void FocopsLoss::add(const PolicyChunk& chunk) const {
 
 void FocopsBase::read_live() {
   Agent::read_live();
-  loss_.temperature = static_cast<float>(options().number("temperature"));
-  loss_.eta = static_cast<float>(options().number("focops_eta"));
+  const FocopsOwnOptions o = kOwnRows.read(options());
+  loss_.temperature = static_cast<float>(o.temperature);
+  loss_.eta = static_cast<float>(o.eta);
 }
 
 FocopsRule::FocopsRule(const ResolvedAgentConfig& resolved)
     : lagrange_(resolved),
       count_(resolved.num_limited),
-      mix_(resolved.options.flag("multiplier_divide") ? Mix::kSum : Mix::kPlain) {}
+      mix_(kOwnRows.read(resolved.options).divide ? Mix::kSum : Mix::kPlain) {}
 
 void FocopsRule::step(const JudgedCosts& costs, int32_t epoch) {
   lagrange_.step(costs, epoch);
@@ -71,30 +85,25 @@ void FocopsRule::visit(StateIo& io) {
 
 namespace {
 
-constexpr double kPaperBound = 2;  // on nu
-
 // No cost is under a limit of 0, so there nu only climbs. A large one would leave of the reward, beside the
 // KL's fixed weight, next to nothing.
 void bound_multiplier(ResolvedAgentConfig& resolved) {
-  const double *limit = resolved.limit, bound = resolved.options.number("multiplier_max");
+  const double *limit = resolved.limit, bound = kLagrangeRows.read(resolved.options).max;
   if (std::find(limit, limit + resolved.num_limited, 0.0) != limit + resolved.num_limited)
     resolved.options.set_default("multiplier_max", std::min(bound, kPaperBound));
 }
 
-constexpr std::array kFocopsOptions = {
-    number_option("temperature", 1.5, 1e-6, 1e6, "lambda of the paper, fixed", true),
-    basic(number_option("focops_eta", 0.02, 0, 1e6,
-                        "samples whose KL(new || old) is above this teach nothing", true)),
-    legacy(flag_option("multiplier_divide", false, "advantage over (1 + nu), as a peer has it")),
-};
-constexpr auto kFocopsTable =
-    with_defaults(join_options(kSharedOptions, kMultiplierOptions, kFocopsOptions, kOneCostOptions),
-                  {OtherDefault{"multiplier_optimizer", 0, "sgd"}, OtherDefault{"multiplier_init", 0},
-                   OtherDefault{"multiplier_lr", 0.01}, OtherDefault{"multiplier_max", kPaperBound},
-                   OtherDefault{"early_stop_kl", 0.02}});
+struct FocopsOptions : SharedOptions, LagrangeOptions, WindowOptions, FocopsOwnOptions, OneCostOptions {};
+constexpr auto kFocopsRows =
+    option_rows<FocopsOptions>(kSharedRows, kLagrangeRows, kWindowRows, kOwnRows, kOneCostRows)
+        .with<&MultiplierOptions::optimizer>("sgd")
+        .with<&MultiplierOptions::init>(0.0)
+        .with<&MultiplierOptions::rate>(0.01)
+        .with<&MultiplierOptions::max>(kPaperBound)
+        .with<&SharedOptions::early_stop_kl>(0.02);
 }  // namespace
 constinit const AlgoRow kFocops = make_algo_row<Focops>(
-    "focops", "First-order constrained optimisation in policy space (Zhang et al. 2020)", kFocopsTable,
+    "focops", "First-order constrained optimisation in policy space (Zhang et al. 2020)", kFocopsRows,
     Costs::kOne, bound_multiplier);
 
 }  // namespace rdm

@@ -25,6 +25,11 @@ class FocopsLoss final : public PolicyLoss {
   float temperature = 1.5f, eta = 0.02f;
 };
 
+struct FocopsOwnOptions {
+  double temperature, eta;
+  bool divide;
+};
+
 class FocopsBase : public Agent {
  public:
   explicit FocopsBase(ResolvedAgentConfig&& resolved) : Agent(std::move(resolved)) {}

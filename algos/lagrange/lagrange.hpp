@@ -1,11 +1,34 @@
 // The rule of the Lagrangian methods: one multiplier for each cost limit, moved by dual ascent.
 #pragma once
+#include "algos/core/option_tables.hpp"
 #include "algos/core/resolved_config.hpp"
 #include "algos/lagrange/multiplier.hpp"
 #include "algos/rollout/limits.hpp"
 #include "algos/rollout/rollout.hpp"
 
 namespace rdm {
+
+struct LagrangeOptions : MultiplierOptions {
+  int32_t warmup = 0;  // epochs in which rate and gain grow from 0
+};
+inline constexpr auto kLagrangeRows = option_rows<LagrangeOptions>(
+    row<&MultiplierOptions::optimizer, MultiplierOptimizer::kSgd, MultiplierOptimizer::kAdam,
+        MultiplierOptimizer::kSoftplus>(
+        legacy(text_option("multiplier_optimizer", "adam", "sgd|adam|softplus",
+                           "of the multipliers; softplus: Adam on ln(e^l - 1)"))),
+    row<&MultiplierOptions::init>(
+        basic(number_option("multiplier_init", 0.001, 0, 1e6, "initial multiplier"))),
+    row<&MultiplierOptions::rate>(
+        basic(number_option("multiplier_lr", 0.035, 0, 1e3, "rate of the multiplier per epoch", true))),
+    row<&MultiplierOptions::max>(
+        number_option("multiplier_max", 1e6, 0, kMaxMultiplier, "upper bound on the multiplier", true)),
+    row<&MultiplierOptions::gain>(number_option(
+        "multiplier_gain", 0, 0, 1e6,
+        "added to the multiplier per violation: damps its swings (augmented Lagrangian)", true)),
+    row<&MultiplierOptions::normalized>(
+        legacy(flag_option("multiplier_normalized", false, "divide the violation by the limit; at most 3"))),
+    row<&LagrangeOptions::warmup>(integer_option(
+        "multiplier_warmup", 0, 0, 1 << 30, "epochs in which the multiplier's rate grows from 0", true)));
 
 class Lagrange {
  public:
@@ -16,13 +39,13 @@ class Lagrange {
   double weight(int32_t i) const { return multiplier_[i].value(); }
   Mix mix() const { return Mix::kSum; }
   bool split() const { return split_; }
-  void read_live(const Options& options);
+  void read_live(const Options& options) { options_ = kLagrangeRows.read(options); }
   void visit(StateIo& io);
 
  private:
-  MultiplierOptions options_;
+  LagrangeOptions options_;
   Multiplier multiplier_[kMaxCosts];
-  int32_t count_ = 0, warmup_ = 0;
+  int32_t count_ = 0;
   bool split_ = false;
 };
 

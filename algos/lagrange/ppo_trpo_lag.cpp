@@ -16,7 +16,6 @@
 //   and l makes up for the scale, not for what is farther.
 // - the authors learn l in softplus form (multiplier_optimizer=softplus); the default is Adam on l itself.
 #include "algos/algo_registry.hpp"
-#include "algos/core/option_tables.hpp"
 #include "algos/first_order/ppo.hpp"
 #include "algos/lagrange/cost_weighted.hpp"
 #include "algos/lagrange/lagrange.hpp"
@@ -24,17 +23,20 @@
 
 namespace rdm {
 namespace {
-constexpr auto kPpoOptions = join_options(kSharedOptions, kClipOptions, kMultiplierOptions, kSplitOptions);
-constexpr auto kTrpoOptions = with_defaults(
-    join_options(kSharedOptions, kTrustOptions, kMultiplierOptions, kSplitOptions), kTrustDefaults);
+struct LagOptions : LagrangeOptions, WindowOptions, SplitOptions {};
+constexpr auto kLagRows = option_rows<LagOptions>(kLagrangeRows, kWindowRows, kSplitRows);
+struct PpoLagOptions : PpoOptions, LagOptions {};
+constexpr auto kPpoLagRows = option_rows<PpoLagOptions>(kPpoRows, kLagRows);
+struct TrpoLagOptions : TrpoOptions, LagOptions {};
+constexpr auto kTrpoLagRows = option_rows<TrpoLagOptions>(kTrpoRows, kLagRows);
 }  // namespace
 
 constinit const AlgoRow kPpoLag = make_algo_row<CostWeighted<Ppo, Lagrange>>(
     "ppo_lag",
     "PPO on one clipped advantage, reward less costs by their Lagrange multipliers (Ray et al. 2019)",
-    kPpoOptions, Costs::kAny);
+    kPpoLagRows, Costs::kAny);
 constinit const AlgoRow kTrpoLag = make_algo_row<CostWeighted<Trpo, Lagrange>>(
-    "trpo_lag", "TRPO with a Lagrange multiplier for each cost limit (Ray et al. 2019)", kTrpoOptions,
+    "trpo_lag", "TRPO with a Lagrange multiplier for each cost limit (Ray et al. 2019)", kTrpoLagRows,
     Costs::kAny);
 
 }  // namespace rdm

@@ -1,13 +1,22 @@
 #include "algos/penalty/ipo.hpp"
 
-#include <cstring>
-
 #include "algos/algo_registry.hpp"
-#include "algos/core/option_tables.hpp"
 #include "algos/lagrange/cost_weighted.hpp"
 #include "algos/penalty/p3o.hpp"
 
 namespace rdm {
+namespace {
+
+constexpr auto kBarrierRows = option_rows<BarrierOptions>(
+    row<&BarrierOptions::exact, false, true>(text_option(
+        "barrier", "epoch", "epoch|exact",
+        "epoch: slope at J_c for an epoch, nearly a switch; exact: the paper's, at each minibatch's J_c")),
+    row<&BarrierOptions::kappa>(basic(
+        number_option("barrier_kappa", 0.01, 0, 1e6, "weight of ln(limit - J_c): 1 / m of the paper", true))),
+    row<&BarrierOptions::max>(number_option(
+        "barrier_max", 1, 0, kHuge, "bound on the barrier's slope, and the slope beyond the limit", true)));
+
+}  // namespace
 
 double barrier_slope(double cost, double limit, double kappa, double max) {
   const double slope = kappa / (limit - cost + 1e-8);
@@ -15,14 +24,14 @@ double barrier_slope(double cost, double limit, double kappa, double max) {
 }
 
 void BarrierRule::read_live(const Options& o) {
-  kappa_ = o.number("barrier_kappa");
-  max_ = o.number("barrier_max");
-  split_ = std::strcmp(o.text("cost_loss"), "split") == 0;
+  barrier_ = kBarrierRows.read(o);
+  split_ = kSplitRows.read(o).split;
 }
 
 void BarrierRule::step(const JudgedCosts& costs, int32_t) {
   for (int32_t i = 0; i < count_; ++i)
-    if (costs.known[i]) slope_[i] = barrier_slope(costs.cost[i], costs.limit[i], kappa_, max_);
+    if (costs.known[i])
+      slope_[i] = barrier_slope(costs.cost[i], costs.limit[i], barrier_.kappa, barrier_.max);
 }
 
 void BarrierRule::visit(StateIo& io) {
@@ -44,12 +53,11 @@ class Ipo final : public CostWeighted<Ppo, BarrierRule> {
 
  protected:
   const PolicyLoss* policy_loss() const override { return exact_ ? &loss_ : CostWeighted::policy_loss(); }
-  void opened() override { exact_ = std::strcmp(options().text("barrier"), "exact") == 0; }
   void read_live() override {
     CostWeighted::read_live();
-    loss_.clip = static_cast<float>(options().number("clip"));
-    loss_.kappa = options().number("barrier_kappa");
-    loss_.max = options().number("barrier_max");
+    const BarrierOptions o = kBarrierRows.read(options());
+    exact_ = o.exact;
+    loss_.clip = clip(), loss_.kappa = o.kappa, loss_.max = o.max;
   }
   void begin_epoch(const JudgedCosts& costs, int32_t epoch) override {
     CostWeighted::begin_epoch(costs, epoch);
@@ -76,22 +84,14 @@ class Ipo final : public CostWeighted<Ppo, BarrierRule> {
   bool exact_ = false, known_ = false;
 };
 
-constexpr std::array kBarrierOptions = {
-    text_option(
-        "barrier", "epoch", "epoch|exact",
-        "epoch: slope at J_c for an epoch, nearly a switch; exact: the paper's, at each minibatch's J_c"),
-    basic(
-        number_option("barrier_kappa", 0.01, 0, 1e6, "weight of ln(limit - J_c): 1 / m of the paper", true)),
-    number_option("barrier_max", 1, 0, kHuge, "bound on the barrier's slope, and the slope beyond the limit",
-                  true),
-};
-constexpr auto kIpoTable = with_defaults(join_options(kSharedOptions, kClipOptions, kBarrierOptions,
-                                                      kSplitOptions, kViolationOptions, kWindowOptions),
-                                         {OtherDefault{"violation_scale", 0, "raw"}});
+struct IpoOptions : PpoOptions, BarrierOptions, SplitOptions, ViolationOptions, WindowOptions {};
+constexpr auto kIpoRows =
+    option_rows<IpoOptions>(kPpoRows, kBarrierRows, kSplitRows, kViolationRows, kWindowRows)
+        .with<&ViolationOptions::scale>("raw");
 }  // namespace
 constinit const AlgoRow kIpo = make_algo_row<Ipo>(
     "ipo",
     "PPO with a cost weight that jumps to 1 at each limit; a barrier with barrier=exact (Liu et al. 2020)",
-    kIpoTable, Costs::kAny);
+    kIpoRows, Costs::kAny);
 
 }  // namespace rdm

@@ -31,6 +31,11 @@ class BarrierLoss final : public PenalizedSurrogate {
   double kappa = 0.01, max = 1;
 };
 
+struct BarrierOptions {
+  bool exact;
+  double kappa, max;
+};
+
 class BarrierRule {
  public:
   explicit BarrierRule(const ResolvedAgentConfig& resolved) : count_(resolved.num_limited) {
@@ -45,7 +50,7 @@ class BarrierRule {
 
  private:
   double slope_[kMaxCosts] = {};
-  double kappa_ = 0.01, max_ = 1;
+  BarrierOptions barrier_{};
   int32_t count_ = 0;
   bool split_ = false;
 };

@@ -1,12 +1,23 @@
 #include "algos/penalty/p3o.hpp"
 
 #include "algos/algo_registry.hpp"
-#include "algos/core/option_tables.hpp"
 
 namespace rdm {
 namespace {
+
 constexpr double kMaxPenalty = 1e9;
-}
+
+constexpr auto kPenaltyRows = option_rows<PenaltyOptions>(
+    row<&PenaltyOptions::init>(
+        basic(number_option("penalty", 20, 0, 1e6, "kappa, initial weight of the penalty"))),
+    row<&PenaltyOptions::growth>(
+        number_option("penalty_growth", 1, 1, 10,
+                      "factor on kappa per epoch; 1: fixed, where the paper has it grow", true)),
+    row<&PenaltyOptions::max>(number_option("penalty_max", 20, 0, kMaxPenalty, "largest kappa", true)),
+    row<&PenaltyOptions::clip>(
+        flag_option("penalty_clip", true, "clip the cost's ratio too; the peers do not", true)));
+
+}  // namespace
 
 SampleLoss penalty_loss(float ratio, float cost, float clip) {
   SampleLoss out;
@@ -31,16 +42,20 @@ SampleLoss PenalizedSurrogate::sample(const Rollout& r, size_t at, float ratio) 
   return out;
 }
 
+void P3o::opened() {
+  kappa_ = kPenaltyRows.read(options()).init;
+}
+
 void P3o::read_live() {
   Ppo::read_live();
-  loss_.clip = static_cast<float>(options().number("clip"));
-  loss_.clip_cost = options().flag("penalty_clip");
+  penalty_ = kPenaltyRows.read(options());
+  loss_.clip = clip();
+  loss_.clip_cost = penalty_.clip;
 }
 
 void P3o::begin_epoch(const JudgedCosts& costs, int32_t epoch) {
   Ppo::begin_epoch(costs, epoch);
-  if (epoch > 1)
-    kappa_ = std::min(kappa_ * options().number("penalty_growth"), options().number("penalty_max"));
+  if (epoch > 1) kappa_ = std::min(kappa_ * penalty_.growth, penalty_.max);
   for (int32_t i = 0; i < resolved().num_limited; ++i) violation_[i] = violation(costs, i);
 }
 
@@ -60,18 +75,11 @@ void P3o::visit_state(StateIo& io) {
 }
 
 namespace {
-constexpr std::array kPenaltyOptions = {
-    basic(number_option("penalty", 20, 0, 1e6, "kappa, initial weight of the penalty")),
-    number_option("penalty_growth", 1, 1, 10,
-                  "factor on kappa per epoch; 1: fixed, where the paper has it grow", true),
-    number_option("penalty_max", 20, 0, kMaxPenalty, "largest kappa", true),
-    flag_option("penalty_clip", true, "clip the cost's ratio too; the peers do not", true),
-};
-constexpr auto kP3oTable =
-    join_options(kSharedOptions, kClipOptions, kPenaltyOptions, kViolationOptions, kWindowOptions);
+struct P3oOptions : PpoOptions, PenaltyOptions, ViolationOptions, WindowOptions {};
+constexpr auto kP3oRows = option_rows<P3oOptions>(kPpoRows, kPenaltyRows, kViolationRows, kWindowRows);
 }  // namespace
 constinit const AlgoRow kP3o = make_algo_row<P3o>(
-    "p3o", "PPO with an exact penalty of fixed weight on each cost limit (Zhang et al. 2022)", kP3oTable,
+    "p3o", "PPO with an exact penalty of fixed weight on each cost limit (Zhang et al. 2022)", kP3oRows,
     Costs::kAny);
 
 }  // namespace rdm

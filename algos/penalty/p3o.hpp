@@ -31,6 +31,11 @@ class PenalizedSurrogate : public RatioLoss {
   SampleLoss sample(const Rollout& r, size_t at, float ratio) const override;
 };
 
+struct PenaltyOptions {
+  double init, growth, max;  // of kappa
+  bool clip;
+};
+
 class P3o final : public Ppo {
  public:
   explicit P3o(ResolvedAgentConfig&& resolved) : Ppo(std::move(resolved)) {}
@@ -42,12 +47,13 @@ class P3o final : public Ppo {
   Job measure_minibatch(const Batch& batch) override;
   void begin_minibatch(const Surrogate& now) override;
   double cost_weight(int32_t) const override { return kappa_; }
-  void opened() override { kappa_ = options().number("penalty"); }
+  void opened() override;
   void read_live() override;
   void visit_state(StateIo& io) override;
 
  private:
   PenalizedSurrogate loss_;
+  PenaltyOptions penalty_{};
   double kappa_ = 0;
   double violation_[kMaxCosts] = {};
 };

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <limits>
 
+#include "algos/core/option_tables.hpp"
 #include "base/elementary.hpp"
 #include "base/error.hpp"
 #include "nn/gaussian.hpp"
@@ -49,7 +50,6 @@ void Collector::check_flags(const char* name, const uint8_t* flags) const {
 }
 
 void Collector::carve(Arena& arena, const ResolvedAgentConfig& resolved) {
-  const Options& o = resolved.options;
   rollout_ = carve_rollout(arena, resolved);
   normalizer_ = carve_normalizer(arena, resolved.config.obs_dim);
   reward_scale_ = carve_normalizer(arena, 1);
@@ -57,10 +57,11 @@ void Collector::carve(Arena& arena, const ResolvedAgentConfig& resolved) {
   scaled_reward_ = arena.make<float>(resolved.num_envs());
   scaled_cost_ = arena.make<float>(resolved.num_envs() * static_cast<size_t>(resolved.config.cost_dim));
   noise_.carve(arena, resolved);
-  if (o.flag("normalize_obs")) usual_.carve(arena, resolved.num_envs());
-  episodes_.carve(arena, resolved.config.num_envs, resolved.config.cost_dim,
-                  o.knows("multiplier_window") ? o.integer("multiplier_window") : kStatsWindow,
-                  resolved.config.ranks.count);
+  if (resolved.shared.normalize_obs) usual_.carve(arena, resolved.num_envs());
+  episodes_.carve(
+      arena, resolved.config.num_envs, resolved.config.cost_dim,
+      kWindowRows.known_to(resolved.options) ? kWindowRows.read(resolved.options).window : kStatsWindow,
+      resolved.config.ranks.count);
   const auto blocks = static_cast<size_t>(resolved.blocks);
   const auto widest = std::max(resolved.obs_dim(), static_cast<size_t>(resolved.config.cost_dim));
   moments_step_ = 1 + 2 * widest;
@@ -78,29 +79,17 @@ void Collector::carve(Arena& arena, const ResolvedAgentConfig& resolved) {
 }
 
 void Collector::open(const ResolvedAgentConfig& resolved, const Networks& nets, BatchWorkers& workers) {
-  const Options& o = resolved.options;
   resolved_ = &resolved;
   nets_ = &nets;
   workers_ = &workers;
   noise_.reset(resolved.config.seed, resolved.config.ranks.rank * resolved.config.num_envs);
-  normalizer_.clip = static_cast<float>(o.number("obs_clip"));
-  normalize_ = o.flag("normalize_obs");
-  obs_count_max_ = o.number("obs_count_max");
-  obs_freeze_ = o.number("obs_freeze");
-  normalize_reward_ = o.flag("normalize_reward");
-  reward_factor_ = static_cast<float>(o.number("reward_factor"));
-  normalize_cost_ = o.flag("normalize_cost") && resolved.config.cost_dim > 0;
-  terminal_cost_ = o.flag("terminal_cost");
-  discounted_limit_ = o.flag("discounted_limit");
-  discount_ = o.number("discount");
-  advantage_ = {o.number("lambda"), o.number("cost_lambda"), o.flag("standardize_reward_adv"),
-                std::strcmp(o.text("scale_cost_adv"), "std") == 0};
+  normalizer_.clip = static_cast<float>(shared().obs_clip);
 }
 
 void Collector::drop() {
   rollout_.filled = 0;
   pending_ = false;
-  if (normalize_) usual_.drop();
+  if (normalizes()) usual_.drop();
   std::fill_n(epoch_cost_, resolved_->num_envs() * static_cast<size_t>(resolved_->config.cost_dim), 0.0);
   std::fill_n(epoch_steps_, resolved_->num_envs(), 0.0);
   invalid_ = cut_ = 0;
@@ -108,7 +97,7 @@ void Collector::drop() {
 }
 
 const float* Collector::normalized(const float* obs, int32_t rows, float* memory) const {
-  if (!normalize_) return obs;
+  if (!normalizes()) return obs;
   normalizer_apply(normalizer_, obs, rows, memory);
   return memory;
 }
@@ -119,7 +108,7 @@ Novelty Collector::novelty(const float* row) const {
 }
 
 void Collector::measure_usual(const float* obs, int32_t rows) {
-  if (!normalize_) return;
+  if (!normalizes()) return;
   for (size_t i = 0; i < static_cast<size_t>(rows); ++i) usual_.count(novelty(obs + i * rollout_.obs_dim));
   usual_.close_alone();
 }
@@ -183,7 +172,7 @@ void Collector::act_rows(const Workspace& workspace, const float* obs, const Poi
     const float *log_std = r.log_std_of(at + i), *std = std_;
     if (nets_->state_std()) kernels().map_exp(log_std, dim, own_std), std = own_std;
     const int32_t env = first + static_cast<int32_t>(i);
-    if (normalize_) usual_.see(static_cast<size_t>(env), novelty(obs + i * r.obs_dim));
+    if (normalizes()) usual_.see(static_cast<size_t>(env), novelty(obs + i * r.obs_dim));
     if (given)
       noise_.take(env, mean + i * dim, given + i * dim, centered);
     else
@@ -227,8 +216,8 @@ void Collector::act(const float* obs, bool sample, float* action, const PointRow
 }
 
 void Collector::decide(const float* obs, const PointRows& clouds, float* action, const float* given) {
-  if (normalize_ && !(obs_freeze_ > 0 && normalizer_.count >= obs_freeze_))
-    merge(normalizer_, obs, nullptr, obs_count_max_);
+  if (normalizes() && !(shared().obs_freeze > 0 && normalizer_.count >= shared().obs_freeze))
+    merge(normalizer_, obs, nullptr, shared().obs_count_max);
   for (size_t j = 0; !nets_->state_std() && j < rollout_.action_dim; ++j) {
     rollout_.log_std[j] = nets_->log_std()[j] + resolved_->log_share;
     std_[j] = static_cast<float>(elementary::exp(static_cast<double>(rollout_.log_std[j])));
@@ -325,14 +314,16 @@ void Collector::charge_fall(int32_t env, float discount, float* sample_cost, dou
   const auto steps = static_cast<double>(left);
   for (int32_t k = 0; k < resolved_->config.cost_dim; ++k)
     charge[k] = episodes_.cost(env, k) / static_cast<double>(length) * steps;
-  const double tail = discount_ < 1 ? (1 - elementary::pow(discount_, left)) / (1 - discount_) : steps;
+  const double tail = shared().discount < 1
+                          ? (1 - elementary::pow(shared().discount, left)) / (1 - shared().discount)
+                          : steps;
   for (int32_t i = 0; i < resolved_->num_limited; ++i) {
     const int32_t k = resolved_->column[i];
-    const float scale = normalize_cost_ ? cost_scale_.scale[k] : 1;
+    const float scale = shared().normalize_cost ? cost_scale_.scale[k] : 1;
     sample_cost[i] += discount * scale * static_cast<float>(charge[k] / steps * tail);
   }
-  if (!discounted_limit_) return;
-  const double share = elementary::pow(discount_, length) * tail / steps;
+  if (!shared().discounted_limit) return;
+  const double share = elementary::pow(shared().discount, length) * tail / steps;
   for (int32_t k = 0; k < resolved_->config.cost_dim; ++k) charge[k] *= share;
 }
 
@@ -340,16 +331,16 @@ void Collector::charge_fall(int32_t env, float discount, float* sample_cost, dou
 void Collector::scale_rewards(const Transition& t) {
   const int32_t envs = rollout_.num_envs;
   reward_ = t.reward, cost_ = t.cost;
-  if (normalize_reward_) {
+  if (shared().normalize_reward) {
     merge(reward_scale_, t.reward, t.valid, 0);
     normalizer_apply(reward_scale_, t.reward, envs, scaled_reward_);
     reward_ = scaled_reward_;
   }
-  if (reward_factor_ != 1) {
-    for (int32_t i = 0; i < envs; ++i) scaled_reward_[i] = reward_factor_ * reward_[i];
+  if (const auto factor = static_cast<float>(shared().reward_factor); factor != 1) {
+    for (int32_t i = 0; i < envs; ++i) scaled_reward_[i] = factor * reward_[i];
     reward_ = scaled_reward_;
   }
-  if (normalize_cost_) {
+  if (shared().normalize_cost && resolved_->config.cost_dim > 0) {
     merge(cost_scale_, t.cost, t.valid, 0);
     normalizer_apply(cost_scale_, t.cost, envs, scaled_cost_);
     cost_ = scaled_cost_;
@@ -364,7 +355,8 @@ void Collector::count_row(const Transition& t, int32_t env, const float* cost, i
   const bool over = flag(t.terminated, e, false) || flag(t.truncated, e, false);
   const bool resets = !valid && !over && episodes_.length(env) == 0;
   const int32_t taken = resets ? 0 : steps;
-  const double weight = discounted_limit_ ? elementary::pow(discount_, episodes_.length(env)) : 1;
+  const double weight =
+      shared().discounted_limit ? elementary::pow(shared().discount, episodes_.length(env)) : 1;
   episodes_.add(env, valid ? static_cast<double>(t.reward[e]) : 0, cost, taken,
                 !resets && flag(t.success, e, false), weight);
   own_steps_ += taken;
@@ -385,7 +377,7 @@ void Collector::end_row(const Transition& t, int32_t env, float discount, float*
     return episodes_.finish(env, false, nullptr);
   }
   double charge[kMaxCosts];
-  const bool charged = terminated && terminal_cost_;
+  const bool charged = terminated && shared().terminal_cost;
   if (charged) charge_fall(env, discount, sample_cost, charge);
   episodes_.finish(env, terminated, charged ? charge : nullptr);
   noise_.end_episode(env);
@@ -397,13 +389,13 @@ void Collector::record_row(const Transition& t, int32_t env) {
   const size_t at = r.row(r.filled) + e;
   const size_t first = e * static_cast<size_t>(resolved_->config.cost_dim);
   const float *cost = t.cost ? t.cost + first : nullptr, *learned = t.cost ? cost_ + first : nullptr;
-  const int32_t steps = t.steps ? t.steps[e] : resolved_->action_repeat;
-  const auto discount = static_cast<float>(elementary::pow(discount_, steps));
+  const int32_t steps = t.steps ? t.steps[e] : shared().action_repeat;
+  const auto discount = static_cast<float>(elementary::pow(shared().discount, steps));
   float* limited = r.cost + at * costs;
   count_row(t, env, cost, steps);
   r.valid[at] = flag(t.valid, e, true);
   if (r.valid[at]) {
-    if (normalize_) usual_.count(e);
+    if (normalizes()) usual_.count(e);
     const bool over = flag(t.terminated, e, false) || flag(t.truncated, e, false);
     r.reward[at] = reward_[e] + discount * final_value_[e];
     for (size_t i = 0; i < costs; ++i)
@@ -522,7 +514,10 @@ void Collector::begin_estimate(const float* last_obs) {
 
 bool Collector::estimate_on() {
   if (column_ < rollout_.num_costs) {
-    estimate_advantage(rollout_, column_++, advantage_, workers_->ranks());
+    const SharedOptions& o = shared();
+    estimate_advantage(rollout_, column_++,
+                       {o.lambda, o.cost_lambda, o.standardize_reward_adv, o.standardize_cost_adv},
+                       workers_->ranks());
     return false;
   }
   list_rows();

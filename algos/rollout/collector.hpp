@@ -70,11 +70,11 @@ class Collector {
   Normalizer& normalizer() { return normalizer_; }
   // The rows as networks see them: obs, or with normalize_obs memory [rows][obs_dim], which may be obs.
   const float* normalized(const float* obs, int32_t rows, float* memory) const;
-  bool normalizes() const { return normalize_; }
+  bool normalizes() const { return shared().normalize_obs; }
   // How far rows of an epoch usually are from what the statistics say; with normalize_obs.
   UsualRows& usual() { return usual_; }
   void close_usual() {
-    if (normalize_) usual_.close(workers_->ranks());
+    if (normalizes()) usual_.close(workers_->ranks());
   }
   // What is usual is that of these rows, a recording's, not of an epoch's.
   void measure_usual(const float* obs, int32_t rows);
@@ -87,6 +87,7 @@ class Collector {
   }
 
  private:
+  const SharedOptions& shared() const { return resolved_->shared; }
   void values(const Workspace& workspace, const float* x, int32_t rows, float* value,
               float* cost_value) const;
   // A decision for action, or with the actions `given`; the other one is null.
@@ -131,8 +132,6 @@ class Collector {
   // What is learned from: [num_envs] and [num_envs][cost_dim], the transition's own or scaled in scaled_*.
   const float *reward_ = nullptr, *cost_ = nullptr;
   float *scaled_reward_ = nullptr, *scaled_cost_ = nullptr;
-  AdvantageOptions advantage_;
-  double discount_ = 0, obs_count_max_ = 0, obs_freeze_ = 0;
   int64_t env_steps_ = 0, own_steps_ = 0;  // of all ranks, and this one's since they were counted
   double* moments_ = nullptr;              // [this rank's blocks][1 + 2 widest row]; none for one block alone
   size_t moments_step_ = 0;
@@ -145,9 +144,6 @@ class Collector {
   double *epoch_cost_ = nullptr, *epoch_steps_ = nullptr;
   int64_t invalid_ = 0, cut_ = 0, status_[EpochTotals::kStatusKinds] = {};
   bool pending_ = false;  // a sampled act waits for its record
-  bool normalize_ = true, terminal_cost_ = false, discounted_limit_ = false;
-  bool normalize_reward_ = false, normalize_cost_ = false;
-  float reward_factor_ = 1;
 };
 
 // Error(kArgument) naming the first row of x [rows][dim] that is not finite; rows whose mask is 0 are

@@ -12,7 +12,7 @@ constexpr double kMaxNoise = 1e6;
 void Noise::carve(Arena& arena, const ResolvedAgentConfig& resolved) {
   num_envs_ = resolved.config.num_envs;
   dim_ = resolved.config.action_dim;
-  correlation_ = static_cast<float>(resolved.options.number("noise_correlation"));
+  correlation_ = static_cast<float>(resolved.shared.noise_correlation);
   stream_ = arena.make<Stream>(resolved.num_envs());
   state_ = arena.make<float>(resolved.num_envs() * resolved.action_dim());
 }

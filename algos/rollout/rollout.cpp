@@ -20,7 +20,7 @@ inline void fetch(const float* row, size_t n) {
 
 Rollout carve_rollout(Arena& arena, const ResolvedAgentConfig& resolved) {
   Rollout r;
-  r.horizon = resolved.horizon;
+  r.horizon = resolved.shared.horizon;
   r.num_envs = resolved.config.num_envs;
   r.num_costs = resolved.num_limited;
   r.obs_dim = resolved.obs_dim();

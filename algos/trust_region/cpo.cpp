@@ -1,7 +1,6 @@
 #include "algos/trust_region/cpo.hpp"
 
 #include "algos/algo_registry.hpp"
-#include "algos/core/option_tables.hpp"
 #include "algos/trust_region/cpo_problem.hpp"
 
 namespace rdm {
@@ -39,13 +38,8 @@ void Cpo::visit_state(StateIo& io) {
   io.integer(cost_, 0, resolved().num_limited - 1);
 }
 
-namespace {
-constexpr auto kCpoTable = with_defaults(
-    join_options(kSharedOptions, kTrustOptions, kViolationOptions, kOneCostOptions, kWindowOptions),
-    kTrustDefaults);
-}
 constinit const AlgoRow kCpo = make_algo_row<Cpo>(
-    "cpo", "Constrained policy optimisation, its local problem solved exactly (Achiam et al. 2017)",
-    kCpoTable, Costs::kOne);
+    "cpo", "Constrained policy optimisation, its local problem solved exactly (Achiam et al. 2017)", kCpoRows,
+    Costs::kOne);
 
 }  // namespace rdm

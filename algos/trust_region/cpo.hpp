@@ -12,6 +12,10 @@
 
 namespace rdm {
 
+struct CpoOptions : TrpoOptions, ViolationOptions, OneCostOptions, WindowOptions {};
+inline constexpr auto kCpoRows =
+    option_rows<CpoOptions>(kTrpoRows, kViolationRows, kOneCostRows, kWindowRows);
+
 class Cpo : public Trpo {
  public:
   explicit Cpo(ResolvedAgentConfig&& resolved) : Trpo(std::move(resolved)) {}

@@ -20,25 +20,19 @@ void Fisher::open(const ResolvedAgentConfig& resolved, const Rollout& rollout, c
   rollout_ = &rollout;
   nets_ = &nets;
   workers_ = &workers;
-  dims_ = resolved.options.flag("kl_mean_over_dims") ? resolved.config.action_dim : 1;
-}
-
-void Fisher::read_live(const Options& o) {
-  damping_ = o.number("cg_damping");
-  stride_ = o.integer("fisher_stride");
 }
 
 Job Fisher::begin_rows(const Batch& batch) {
   batch_ = batch;
   int32_t own = 0;
-  for (int32_t b = 0; b < batch.blocks; ++b) own += (batch.segment(b).rows + stride_ - 1) / stride_;
+  for (int32_t b = 0; b < batch.blocks; ++b) own += (batch.segment(b).rows + stride() - 1) / stride();
   rows_ = static_cast<int32_t>(workers_->ranks().total(own));
   for (size_t j = 0; !nets_->state_std() && j < resolved_->action_dim(); ++j) {
     const auto log_std = static_cast<double>(nets_->log_std()[j] + resolved_->log_share);
-    weight_[j] = static_cast<float>(elementary::exp(-2 * log_std) / (rows_ * dims_));
+    weight_[j] = static_cast<float>(elementary::exp(-2 * log_std) / (rows_ * dims()));
   }
   if (!features_) return {};
-  sweep_ = Sweep(batch, stride_);
+  sweep_ = Sweep(batch, stride());
   return Job::of<&Fisher::advance_rows>(this);
 }
 
@@ -46,7 +40,7 @@ bool Fisher::advance_rows(bool) {
   const auto width = static_cast<size_t>(nets_->eyes.features());
   workers_->cut(sweep_, resolved_->chunk_rows);
   workers_->each(sweep_, [&](const Workspace& workspace, const Chunk& chunk) {
-    const PointRows seen = rollout_->clouds(chunk.order, stride_);
+    const PointRows seen = rollout_->clouds(chunk.order, stride());
     pointnet_forward(nets_->eyes, nets_->eyes_net(), seen, chunk.rows, workspace.actor.eyes,
                      workspace.actor.dfeatures, width, workspace.actor.winner);
     for (size_t i = 0; i < static_cast<size_t>(chunk.rows); ++i) {
@@ -58,7 +52,7 @@ bool Fisher::advance_rows(bool) {
 }
 
 PointRows Fisher::clouds(const int32_t* rows) const {
-  PointRows c = rollout_->clouds(rows, stride_);
+  PointRows c = rollout_->clouds(rows, stride());
   if (features_) c.features = features_, c.winner = winner_;
   return c;
 }
@@ -70,7 +64,7 @@ void Fisher::weigh(const float* y, int32_t n, float* dy) const {
       for (size_t j = 0; j < dim; ++j) dy[i * dim + j] *= weight_[j];
     return;
   }
-  const double share = 1 / (rows_ * dims_);
+  const double share = 1 / (rows_ * dims());
   for (size_t i = 0; i < static_cast<size_t>(n); ++i)
     for (size_t j = 0; j < dim; ++j) {
       const size_t mean = 2 * i * dim + j, log_std = mean + dim;
@@ -83,7 +77,7 @@ void Fisher::weigh(const float* y, int32_t n, float* dy) const {
 Job Fisher::begin_product(const float* v, float* out) {
   v_ = v;
   out_ = out;
-  sweep_ = Sweep(batch_, stride_);
+  sweep_ = Sweep(batch_, stride());
   return Job::of<&Fisher::advance_product>(this);
 }
 
@@ -101,7 +95,7 @@ void Fisher::multiply_chunk(Workspace& workspace, const Chunk& chunk) {
   const int32_t n = chunk.rows;
   if (n == 0) return std::fill(grad + skip, grad + size, 0.0f);
   const PointRows seen = clouds(chunk.order);
-  gather_obs(*rollout_, chunk.order, stride_, n, workspace.obs);
+  gather_obs(*rollout_, chunk.order, stride(), n, workspace.obs);
   nets_->forward_actor(workspace.obs, seen, n, workspace.actor, workspace.out);
   nets_->tangent_actor(v_ + skip, workspace.obs, seen, n, workspace.actor, workspace.dout);
   weigh(workspace.out, n, workspace.dout);
@@ -111,7 +105,7 @@ void Fisher::multiply_chunk(Workspace& workspace, const Chunk& chunk) {
 void Fisher::end_product() {
   const size_t skip = nets_->std_size, size = nets_->block[Networks::kActor].size;
   workers_->ranks().sum(out_ + skip, size - skip, nullptr, 0);
-  const auto damping = static_cast<float>(damping_), own = static_cast<float>(2 / dims_);
+  const auto damping = static_cast<float>(options_.cg_damping), own = static_cast<float>(2 / dims());
   for (size_t j = 0; j < skip; ++j) out_[j] = (own + damping) * v_[j];
   for (size_t j = skip; j < size; ++j) out_[j] += damping * v_[j];
 }

@@ -19,13 +19,21 @@
 
 namespace rdm {
 
+struct FisherOptions {
+  double cg_damping;
+  int32_t fisher_stride;
+  bool kl_mean_over_dims;
+};
+
 class Fisher {
  public:
   void carve(Arena& arena, const ResolvedAgentConfig& resolved);
   // All must outlive it.
   void open(const ResolvedAgentConfig& resolved, const Rollout& rollout, const Networks& nets,
             BatchWorkers& workers);
-  void read_live(const Options& options);
+  void read_live(const FisherOptions& options) { options_ = options; }
+  // What sums over action dimensions are divided by.
+  double dims() const { return options_.kl_mean_over_dims ? resolved_->config.action_dim : 1; }
 
   // The matrix is of every stride-th of each block's rows, at the policy as it is at each product. An encoder
   // is held at what it is now: all points go through it here, once, and winners alone in each product; of no
@@ -37,6 +45,7 @@ class Fisher {
   void multiply(const float* v, float* out) { begin_product(v, out).finish(); }
 
  private:
+  int32_t stride() const { return options_.fisher_stride; }
   bool advance_rows(bool whole);
   bool advance_product(bool whole);
   void multiply_chunk(Workspace& workspace, const Chunk& chunk);
@@ -56,8 +65,8 @@ class Fisher {
   Sweep sweep_;
   const float* v_ = nullptr;  // of the product at hand
   float* out_ = nullptr;
-  int32_t rows_ = 0, stride_ = 1;    // rows: that the matrix is of, of all ranks
-  double damping_ = 0.1, dims_ = 1;  // dims: what sums over action dimensions are divided by
+  int32_t rows_ = 0;  // that the matrix is of, of all ranks
+  FisherOptions options_{};
 };
 
 }  // namespace rdm

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "algos/algo_registry.hpp"
-#include "algos/core/option_tables.hpp"
 
 namespace rdm {
 
@@ -48,11 +47,8 @@ void Trpo::report(Learned& out) const {
   out.mean.kl = out.last_kl = region_.reached().kl;
 }
 
-namespace {
-constexpr auto kTrpoTable = with_defaults(join_options(kSharedOptions, kTrustOptions), kTrustDefaults);
-}
 constinit const AlgoRow kTrpo = make_algo_row<Trpo>(
-    "trpo", "Trust region policy optimisation (Schulman et al. 2015); costs are recorded only", kTrpoTable,
+    "trpo", "Trust region policy optimisation (Schulman et al. 2015); costs are recorded only", kTrpoRows,
     Costs::kNone);
 
 }  // namespace rdm

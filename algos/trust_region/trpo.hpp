@@ -7,6 +7,11 @@
 
 namespace rdm {
 
+// Of TRPO, and what tables of algorithms on its step begin with.
+struct TrpoOptions : SharedOptions, TrustOptions {};
+inline constexpr auto kTrpoRows =
+    option_rows<TrpoOptions>(kSharedRows, kTrustRows).with<&SharedOptions::critic_learning_rate>(1e-3);
+
 class Trpo : public Agent {
  public:
   explicit Trpo(ResolvedAgentConfig&& resolved) : Agent(std::move(resolved)) {}

@@ -1,7 +1,6 @@
 #include "algos/trust_region/trust_region.hpp"
 
 #include <algorithm>
-#include <cstring>
 
 namespace rdm {
 
@@ -17,19 +16,14 @@ void TrustRegion::carve(Arena& arena, const ResolvedAgentConfig& resolved, const
 
 void TrustRegion::open(const ResolvedAgentConfig& resolved, const Rollout& rollout, Networks& nets,
                        BatchWorkers& workers, Learner& learner) {
-  resolved_ = &resolved;
   nets_ = &nets;
   learner_ = &learner;
   fisher_.open(resolved, rollout, nets, workers);
-  dims_ = resolved.options.flag("kl_mean_over_dims") ? resolved.config.action_dim : 1;
 }
 
 void TrustRegion::read_live(const Options& o) {
-  fisher_.read_live(o);
-  cg_options_ = {o.integer("cg_iterations"), o.number("cg_tolerance")};
-  limit_ = o.number("trust_kl");
-  tries_ = o.integer("line_search_steps");
-  decay_ = o.number("line_search_decay");
+  options_ = kTrustRows.read(o);
+  fisher_.read_live(options_);
 }
 
 Job TrustRegion::begin_gradient(const PolicyLoss& loss) {
@@ -38,7 +32,7 @@ Job TrustRegion::begin_gradient(const PolicyLoss& loss) {
 
 void TrustRegion::begin_solve(float sign, float* out, float* x) {
   for (size_t i = 0; i < size_; ++i) out[i] = sign * learner_->gradient()[i];
-  cg_.begin(out, cg_work_, cg_options_, x);
+  cg_.begin(out, cg_work_, options_, x);
 }
 
 Job TrustRegion::solve_on() {
@@ -46,7 +40,7 @@ Job TrustRegion::solve_on() {
 }
 
 void TrustRegion::begin_linearize(const Batch& batch, int32_t cost, double share) {
-  delta_ = limit_ * share * share;
+  delta_ = options_.trust_kl * share * share;
   batch_ = batch;
   cost_ = cost;
   cost_loss_ = CostLoss(cost);
@@ -111,15 +105,15 @@ Job TrustRegion::begin_search() {
 
 bool TrustRegion::in_region() const {
   const Surrogate& s = learner_->measured();
-  return s.finite() && s.kl / dims_ <= delta_;
+  return s.finite() && s.kl / fisher_.dims() <= delta_;
 }
 
 Job TrustRegion::next_try() {
-  if (tried_ == tries_) {
+  if (tried_ == options_.line_search_steps) {
     restore_actor(*nets_);
     return end_search(0, before_);
   }
-  if (tried_++ > 0) fraction_ *= decay_;
+  if (tried_++ > 0) fraction_ *= options_.line_search_decay;
   move(fraction_);
   return learner_->begin_measure(batch_, 0, true);
 }

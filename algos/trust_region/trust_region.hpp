@@ -11,11 +11,37 @@
 // throws, as measured on them. With lr_schedule=linear the radius shrinks as a learning rate would.
 #pragma once
 #include "algos/agent/learner.hpp"
+#include "algos/core/option_tables.hpp"
 #include "algos/first_order/ratio_loss.hpp"
 #include "algos/trust_region/conjugate_gradient.hpp"
 #include "algos/trust_region/fisher.hpp"
 
 namespace rdm {
+
+struct TrustOptions : CgOptions, FisherOptions {
+  double trust_kl;
+  int32_t line_search_steps;
+  double line_search_decay;
+};
+inline constexpr auto kTrustRows = option_rows<TrustOptions>(
+    row<&TrustOptions::trust_kl>(
+        basic(number_option("trust_kl", 0.01, 1e-9, 1e3,
+                            "bound on the KL of an epoch's policy step; papers have 0.01 to 0.02", true))),
+    row<&CgOptions::iterations>(
+        integer_option("cg_iterations", 15, 1, 1000, "of conjugate gradients, at most", true)),
+    row<&CgOptions::tolerance>(number_option(
+        "cg_tolerance", 1e-6, 0, 1, "residual, relative to the right-hand side, that is enough", true)),
+    row<&FisherOptions::cg_damping>(
+        number_option("cg_damping", 0.1, 0, 1e6, "added to the diagonal of the Fisher matrix", true)),
+    row<&FisherOptions::fisher_stride>(legacy(
+        integer_option("fisher_stride", 1, 1, 1 << 20, "the Fisher matrix is of every n-th sample", true))),
+    row<&TrustOptions::line_search_steps>(
+        integer_option("line_search_steps", 15, 1, 1000, "lengths that are tried", true)),
+    row<&TrustOptions::line_search_decay>(
+        number_option("line_search_decay", 0.8, 0.01, 0.99, "of one length to the next", true)),
+    row<&FisherOptions::kl_mean_over_dims>(legacy(flag_option(
+        "kl_mean_over_dims", false,
+        "KL and Fisher matrix averaged over action dimensions, as the peers have it; else summed"))));
 
 // Vectors are laid out as the actor's block of parameters.
 class TrustRegion {
@@ -80,12 +106,11 @@ class TrustRegion {
   Job end_search(double taken, const Surrogate& reached);
   void move(double f);
 
-  const ResolvedAgentConfig* resolved_ = nullptr;
   Networks* nets_ = nullptr;
   Learner* learner_ = nullptr;
   Fisher fisher_;
   CgWork cg_work_;
-  CgOptions cg_options_;
+  TrustOptions options_{};
   ConjugateGradient cg_;
   size_t size_ = 0;
   float *g_ = nullptr, *x_ = nullptr, *b_ = nullptr, *p_ = nullptr, *step_ = nullptr;
@@ -93,8 +118,8 @@ class TrustRegion {
   Stage stage_ = Stage::kDone;
   GainLoss gain_;
   CostLoss cost_loss_{0};
-  int32_t cost_ = -1, tries_ = 15, tried_ = 0;
-  double q_ = 0, r_ = 0, s_ = 0, bb_ = 0, limit_ = 0.01, delta_ = 0.01, decay_ = 0.8, dims_ = 1;
+  int32_t cost_ = -1, tried_ = 0;
+  double q_ = 0, r_ = 0, s_ = 0, bb_ = 0, delta_ = 0.01;
   double fraction_ = 1, taken_ = 0;  // of the step: what is tried, what was taken
   Surrogate before_, reached_;
 };

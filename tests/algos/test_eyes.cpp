@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "algos/agent/agent.hpp"
-#include "algos/trust_region/fisher.hpp"
+#include "algos/trust_region/trust_region.hpp"
 #include "heap_count.hpp"
 #include "nn/policy.hpp"
 #include "point_world.hpp"
@@ -471,7 +471,7 @@ TEST(Eyes, FisherProductsAreThoseOfTheWholeNetwork) {
   std::vector<int32_t> order(200);
   for (int32_t i = 0; i < 200; ++i) order[size_of(i)] = (i * 7 + 3) % 200;
   b.fisher.open(resolved, b.rollout, b.nets, b.workers);
-  b.fisher.read_live(resolved.options);
+  b.fisher.read_live(kTrustRows.read(resolved.options));
   b.fisher.set_rows({order.data(), 200});
   const size_t size = b.nets.block[Networks::kActor].size, skip = b.nets.std_size;
   std::vector<float> v(size), product(size), part(b.nets.size);

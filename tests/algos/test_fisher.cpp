@@ -1,5 +1,5 @@
 #include "algos/trust_region/conjugate_gradient.hpp"
-#include "algos/trust_region/fisher.hpp"
+#include "algos/trust_region/trust_region.hpp"
 #include "golden_net.hpp"
 
 using namespace rdm;
@@ -18,7 +18,7 @@ struct FisherBench {
     arena = Arena(HostHooks(), measure.used());
     fisher.carve(arena, b.resolved);
     fisher.open(b.resolved, b.rollout, b.nets, b.workers);
-    fisher.read_live(b.resolved.options);
+    fisher.read_live(kTrustRows.read(b.resolved.options));
     fisher.set_rows({b.order.data(), b.resolved.samples});
   }
   std::vector<float> times(const std::vector<float>& v) {

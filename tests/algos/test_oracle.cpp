@@ -1,7 +1,7 @@
 // Losses, gradients and a Fisher product against torch's autograd: tests/oracle/losses.py makes the vectors.
 #include "algos/lagrange/focops.hpp"
 #include "algos/penalty/p3o.hpp"
-#include "algos/trust_region/fisher.hpp"
+#include "algos/trust_region/trust_region.hpp"
 #include "learner_bench.hpp"
 #include "oracle_losses.hpp"
 
@@ -112,7 +112,7 @@ TEST(Oracle, FisherProduct) {
   Arena arena(HostHooks(), measure.used());
   f.carve(arena, resolved);
   f.open(resolved, o.rollout, o.nets, o.workers);
-  f.read_live(resolved.options);
+  f.read_live(kTrustRows.read(resolved.options));
   f.set_rows({o.order.data(), kRows});
   std::vector<float> v(o.nets.block[Networks::kActor].size), out(v.size());
   for (size_t j = 0; j < Oracle::size(); ++j) v[o.place(j)] = static_cast<float>(wave(j, 12));

@@ -7,29 +7,31 @@ using namespace rdm::test;
 
 namespace {
 
-Options options(const char* kind) {
+SharedOptions options(RateKind kind) {
   Options o;
-  o.add_table(kSharedOptions.data(), static_cast<int32_t>(kSharedOptions.size()));
-  o.set({"lr_schedule", kind, 0}, "test");
-  o.set({"learning_rate", nullptr, 1e-3}, "test");
-  return o;
+  o.add_table(kSharedRows.data(), static_cast<int32_t>(kSharedRows.size()));
+  SharedOptions shared = kSharedRows.read(o);
+  shared.rate_kind = kind;
+  shared.learning_rate = 1e-3;
+  return shared;
 }
 
 }  // namespace
 
 TEST(Schedule, ConstantStays) {
+  const SharedOptions o = options(RateKind::kConstant);
   RateSchedule s;
-  s.reset(options("constant"));
+  s.open(o);
   s.adapt(100, 0);
   EXPECT_EQ(s.rate(0), 1e-3);
   EXPECT_EQ(s.rate(500), 1e-3);
 }
 
 TEST(Schedule, LinearFallsToZeroAndStaysThere) {
-  Options o = options("linear");
-  o.set({"total_epochs", nullptr, 10}, "test");
+  SharedOptions o = options(RateKind::kLinear);
+  o.total_epochs = 10;
   RateSchedule s;
-  s.reset(o);
+  s.open(o);
   EXPECT_DOUBLE_EQ(s.rate(0), 1e-3);
   EXPECT_DOUBLE_EQ(s.rate(4), 0.6e-3);
   EXPECT_EQ(s.rate(10), 0);
@@ -37,10 +39,10 @@ TEST(Schedule, LinearFallsToZeroAndStaysThere) {
 }
 
 TEST(Schedule, KlGoesDownAboveTwiceTheTargetAndUpBelowHalf) {
-  Options o = options("kl");
-  o.set({"kl_target", nullptr, 0.04}, "test");
+  SharedOptions o = options(RateKind::kKl);
+  o.kl_target = 0.04;
   RateSchedule s;
-  s.reset(o);
+  s.open(o);
   s.adapt(0.079, 0);
   s.adapt(0.021, 0);
   EXPECT_EQ(s.rate(7), 1e-3);
@@ -55,12 +57,10 @@ TEST(Schedule, KlGoesDownAboveTwiceTheTargetAndUpBelowHalf) {
 }
 
 TEST(Schedule, TheTargetGoesToItsEndOverTheRun) {
-  Options o = options("kl");
-  for (const auto& [key, number] :
-       {std::pair{"kl_target", 0.04}, {"kl_target_end", 0.01}, {"total_epochs", 6.0}})
-    o.set({key, nullptr, number}, "test");
+  SharedOptions o = options(RateKind::kKl);
+  o.kl_target = 0.04, o.kl_target_end = 0.01, o.total_epochs = 6;
   RateSchedule s;
-  s.reset(o);
+  s.open(o);
   // 0.04, half way 0.025, from epoch 6 on 0.01
   s.adapt(0.079, 0);
   s.adapt(0.049, 3);
@@ -79,13 +79,13 @@ TEST(Schedule, TheTargetGoesToItsEndOverTheRun) {
 }
 
 TEST(Schedule, ANewRateRestartsTheAdaption) {
-  Options o = options("kl");
+  SharedOptions o = options(RateKind::kKl);
   RateSchedule s;
-  s.reset(o);
+  s.open(o);
   s.adapt(1, 0);
-  s.read_live(o);
+  s.read_live();
   EXPECT_LT(s.rate(0), 1e-3);
-  o.set({"learning_rate", nullptr, 2e-3}, "test");
-  s.read_live(o);
+  o.learning_rate = 2e-3;
+  s.read_live();
   EXPECT_EQ(s.rate(0), 2e-3);
 }

@@ -32,7 +32,6 @@ struct Bench {
     workers.open(host(), setup.config.num_threads);
     init_networks(nets, resolved);
     learner.open(resolved, rollout, nets, workers);
-    learner.read_live(resolved.options);
     loss.clip = static_cast<float>(kClip);
     order.resize(size_of(resolved.samples));
     std::iota(order.begin(), order.end(), 0);
@@ -157,7 +156,7 @@ struct Bench {
     for (size_t i = 0; i < size_of(resolved.samples); ++i) {
       const double rho = ratio(p, i), linear = static_cast<double>(rollout.linear[i]);
       sum -= clipped_gain(rho, i) + rho * linear;
-      for (const double l : head(p, i).log_std) sum -= resolved.options.number("entropy") * l;
+      for (const double l : head(p, i).log_std) sum -= resolved.shared.entropy * l;
       const double v = network(p, Networks::kReward, i)[0] - static_cast<double>(rollout.target[i]);
       sum += v * v;
       const std::vector<double> c = network(p, Networks::kCost, i);
@@ -168,7 +167,7 @@ struct Bench {
     }
     double penalty = 0;
     for (size_t j = nets.block[Networks::kReward].offset; j < nets.size; ++j)
-      penalty += resolved.options.number("critic_l2") * p[j] * p[j];
+      penalty += resolved.shared.critic_l2 * p[j] * p[j];
     return sum / n + penalty;
   }
 };

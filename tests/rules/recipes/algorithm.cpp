@@ -1,7 +1,6 @@
 // CRPO on PPO's step (Xu, Liang and Lan 2021, algorithm 1): while an episode's cost is above its limit the
 // policy step lowers that cost alone, else it raises the reward.
 #include "algos/algo_registry.hpp"
-#include "algos/core/option_tables.hpp"
 #include "algos/first_order/ppo.hpp"
 #include "algos/lagrange/cost_weighted.hpp"
 
@@ -30,12 +29,10 @@ class Rectify {
   int32_t violated_ = -1;  // the limit that the policy step serves, -1: none
 };
 
-constexpr auto kOptions = join_options(kSharedOptions, kClipOptions);
-
 }  // namespace
 
 constinit const AlgoRow kCrpo = make_algo_row<CostWeighted<Ppo, Rectify>>(
-    "crpo", "PPO that lowers a cost alone while it is over its limit (Xu et al. 2021)", kOptions,
+    "crpo", "PPO that lowers a cost alone while it is over its limit (Xu et al. 2021)", kPpoRows,
     Costs::kAny);
 
 }  // namespace rdm
