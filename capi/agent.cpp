@@ -1,6 +1,8 @@
 // rdm_agent_*: config to agent and back.
 #include <algorithm>
+#include <cstring>
 #include <string_view>
+#include <type_traits>
 
 #include "base/file.hpp"
 #include "base/text.hpp"
@@ -307,39 +309,21 @@ rdm_result rdm_agent_get_values(const rdm_agent* a, const float* obs, int32_t ro
 }
 
 namespace rdm::capi {
+// All of rdm_epoch: without padding, so a member that Epoch lacks makes it larger.
+#define RDM_BYTES(type, member) +sizeof(rdm_epoch::member)
+static_assert(sizeof(rdm_epoch) == RDM_EPOCH_MEMBERS(RDM_BYTES) + sizeof(rdm_epoch::struct_size) +
+                                       sizeof(rdm_epoch::reserved) + sizeof(rdm_epoch::reserved2) +
+                                       sizeof(rdm_epoch::reserved3),
+              "RDM_EPOCH_MEMBERS lacks a member");
+#undef RDM_BYTES
+
 void write_epoch(rdm_epoch* io, const Epoch& e) {
   rdm_epoch out{};
-  out.epoch = e.epoch;
-  out.env_steps = e.env_steps;
-  out.episodes = e.episodes;
-  out.ret = e.ret;
-  std::copy(e.cost, e.cost + kMaxCosts, out.cost);
-  out.cost_per_step = e.cost_per_step;
-  out.length = e.length;
-  out.fall_rate = e.fall_rate;
-  out.success_rate = e.success_rate;
-  std::copy(e.multiplier, e.multiplier + kMaxCosts, out.multiplier);
-  out.kl = e.kl;
-  out.entropy = e.entropy;
-  out.learning_rate = e.learning_rate;
-  out.action_std = e.action_std;
-  out.loss_policy = e.loss_policy;
-  out.loss_reward_value = e.loss_reward_value;
-  out.loss_cost_value = e.loss_cost_value;
-  out.clip_fraction = e.clip_fraction;
-  out.value_reward = e.value_reward;
-  out.value_cost = e.value_cost;
-  out.passes = e.passes;
-  out.cost_signal = e.cost_signal;
-  out.flags = e.flags;
-  out.skipped_gradients = e.skipped_gradients;
-  out.invalid_rows = e.invalid_rows;
-  out.diverged = e.diverged;
-  out.contacts_left_out = e.contacts_left_out;
-  out.bad_actions = e.bad_actions;
-  out.task_failed = e.task_failed;
-  out.unconverged = e.unconverged;
-  out.slowed = e.slowed;
+#define RDM_GIVE(type, member)                               \
+  static_assert(std::is_same_v<type, decltype(out.member)>); \
+  std::memcpy(&out.member, &e.member, sizeof out.member);
+  RDM_EPOCH_MEMBERS(RDM_GIVE)
+#undef RDM_GIVE
   write_struct(io, out, kFirstEpochSize, "io");
 }
 }  // namespace rdm::capi

@@ -75,20 +75,45 @@ enum EpochFlag : uint32_t {
   kEpochSlowed = 512
 };
 
-// Field by field the public rdm_epoch, without struct_size.
+// What an epoch tells, with the meaning of rdm_epoch, each named here alone: F(type, member).
+using CostValues = double[kMaxCosts];
+#define RDM_EPOCH_MEMBERS(F)    \
+  F(int32_t, epoch)             \
+  F(int64_t, env_steps)         \
+  F(int64_t, episodes)          \
+  F(double, ret)                \
+  F(CostValues, cost)           \
+  F(double, cost_per_step)      \
+  F(double, length)             \
+  F(double, fall_rate)          \
+  F(double, success_rate)       \
+  F(CostValues, multiplier)     \
+  F(double, kl)                 \
+  F(double, entropy)            \
+  F(double, learning_rate)      \
+  F(double, action_std)         \
+  F(double, loss_policy)        \
+  F(double, loss_reward_value)  \
+  F(double, loss_cost_value)    \
+  F(double, clip_fraction)      \
+  F(double, value_reward)       \
+  F(double, value_cost)         \
+  F(int32_t, passes)            \
+  F(int32_t, cost_signal)       \
+  F(uint32_t, flags)            \
+  F(int64_t, skipped_gradients) \
+  F(int64_t, invalid_rows)      \
+  F(int64_t, diverged)          \
+  F(int64_t, contacts_left_out) \
+  F(int64_t, bad_actions)       \
+  F(int64_t, task_failed)       \
+  F(int64_t, unconverged)       \
+  F(int64_t, slowed)
+
 struct Epoch {
-  int32_t epoch = 0;
-  int64_t env_steps = 0, episodes = 0;
-  double ret = 0, cost[kMaxCosts] = {}, cost_per_step = 0, length = 0, fall_rate = 0, success_rate = 0;
-  double multiplier[kMaxCosts] = {};
-  double kl = 0, entropy = 0, learning_rate = 0, action_std = 0;
-  double loss_policy = 0, loss_reward_value = 0, loss_cost_value = 0, clip_fraction = 0;
-  double value_reward = 0, value_cost = 0;
-  int32_t passes = 0;
-  int32_t cost_signal = 0;  // 1: costs are magnitudes
-  uint32_t flags = 0;       // EpochFlag
-  int64_t skipped_gradients = 0, invalid_rows = 0, diverged = 0, contacts_left_out = 0, bad_actions = 0;
-  int64_t task_failed = 0, unconverged = 0, slowed = 0;
+#define RDM_MEMBER(type, member) type member{};
+  RDM_EPOCH_MEMBERS(RDM_MEMBER)
+#undef RDM_MEMBER
 };
 
 struct TensorInfo {
