@@ -25,6 +25,7 @@ enum class Purpose : uint32_t {
   kImitation = 11,   // rows of a recording beside a minibatch
   kClone = 12,       // what is held back for validation, and shuffling
   kCamera = 13,      // where an episode's cameras stand
+  kShield = 14,      // noise of what a shield tries in the place of an action
 };
 
 class Stream {

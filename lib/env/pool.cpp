@@ -239,8 +239,14 @@ bool Pool::running(int32_t env) const {
 int32_t Pool::episode_step(int32_t env) const {
   return impl_->slots[env].episode.step;
 }
+double Pool::gained(int32_t env) const {
+  return impl_->slots[env].episode.sum_reward;
+}
 double Pool::spent(int32_t env, int32_t cost) const {
   return impl_->slots[env].episode.sum_cost[cost];
+}
+uint32_t Pool::course(int32_t env) const {
+  return impl_->slots[env].course;
 }
 const Buffers& Pool::buffers() const {
   return impl_->buffers;
@@ -290,6 +296,7 @@ PoolStats Pool::stats() const {
     s.task_failed += slot.counters.task_failed;
     s.unconverged += slot.counters.unconverged;
     s.slowed += slot.counters.slowed;
+    s.violations += slot.counters.violations;
     const double drift = slot.world->joint_drift();
     if (drift > s.joint_drift) s.joint_drift = drift;
     const double residual = slot.world->solver_residual();

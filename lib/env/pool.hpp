@@ -58,6 +58,7 @@ struct PoolStats {
   double solver_residual = 0;  // m/s; NaN: the engine does not measure it
   int64_t steps = 0, diverged = 0, overflowed = 0, bad_actions = 0, task_failed = 0, unconverged = 0,
           slowed = 0;
+  int64_t violations = 0;  // control steps in which column 0, or a cost with a limit, was above 0
 };
 
 enum class Baseline : int32_t { kZero = 0, kHold = 1, kRandom = 2 };
@@ -123,10 +124,14 @@ class Pool {
   void copy(int32_t env, const Pool& from, int32_t source);
   // Error(kArgument) for a pool that differs, by the names of the two.
   void need_same(const Pool& from, const char* name, const char* own) const;
-  // Of the episode that runs in a world: control steps so far, sum of a cost; false: none runs.
+  // Of the episode that runs in a world, or has ended there: control steps so far, sums of rewards and of a
+  // cost; running: false after its end.
   bool running(int32_t env) const;
   int32_t episode_step(int32_t env) const;
+  double gained(int32_t env) const;
   double spent(int32_t env, int32_t cost) const;
+  // A number that stays while steps alone move a world: resets, saved states, copies and set_joints change it.
+  uint32_t course(int32_t env) const;
   // As World::place_joints; the observation is then of these, and the world's other rows are those of no step.
   // Error(kState) where no episode runs; that of a host's task that fails to observe, whose row stays.
   void set_joints(int32_t env, const double* q, const double* qd);

@@ -28,6 +28,7 @@ struct Episode {
 struct Counters {
   int32_t contacts_max;
   int64_t contacts_sum, steps, diverged, overflowed, bad_actions, task_failed, unconverged, slowed;
+  int64_t violations;
 };
 
 // Where episodes may begin, beside the task's own start.
@@ -49,6 +50,7 @@ struct Slot {
   Stream start;     // whether and where in Starts an episode begins
   uint32_t status;  // of the episode that runs, or has ended and waits for its reset: OR over its steps
   int32_t taken;    // control steps of the last step
+  uint32_t course;  // moves whenever the world becomes what no step has made of it
   double
       magnitude[kMaxTaskCosts];  // with option action_repeat: sums over these of cost_raw where it is above 0
   bool goes_on;                  // a further control step of this step would be of the same episode
@@ -122,7 +124,7 @@ struct Pool::Impl : ResolvedPoolConfig {
   void finish_step(int32_t env);
   void lose_step(int32_t env, uint32_t status);
   void close_step(int32_t env, const Verdict& verdict, uint32_t status, bool lost);
-  bool costs_end(const Verdict& verdict) const;  // option end_on_cost
+  bool costs_count(const Verdict& verdict) const;  // column 0, or one with a limit, is above 0
   void write_verdict(int32_t env, const Verdict& verdict, uint32_t status);
   // f(begin, end, block) for runs of worlds that are all of them together, f(env, block) for every world, on
   // the workers. Both rethrow the error of the lowest world when all is done. `whole`: one run for each

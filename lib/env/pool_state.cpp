@@ -223,6 +223,7 @@ void Pool::set_state(int32_t env, const void* bytes, size_t size) {
   if (held == own) look.expect_end();
   for (int32_t i = range.begin; i < range.end; ++i) {
     m.read_world(i, in);
+    ++m.slots[i].course;
     m.slots[i].status = flagged ? flags.value<uint32_t>() : 0;
     m.clear_rows(i);
     // the flags of an ended world that waits for its reset belong to its state; all else is of a step
@@ -295,6 +296,7 @@ void Pool::Impl::copy_world(int32_t env, const Impl& from, int32_t source) {
   if (disturbance.any()) to.disturbance.copy(s.disturbance);
   to.status = s.status;
   to.taken = s.taken;
+  ++to.course;
   to.goes_on = s.goes_on;
   std::copy_n(s.magnitude, cost_dim, to.magnitude);
   std::copy_n(from.obs(source), obs_dim, obs(env));

@@ -75,6 +75,7 @@ void Pool::set_joints(int32_t env, const double* q, const double* qd) {
     fail(Code::kState, "set_joints: world %d %s", env,
          phase == Phase::kNew ? "was not reset yet" : "has ended its episode; reset it first");
   s.world->place_joints(q, qd);
+  ++s.course;
   float *const row = m.obs(env), *const next = m.final_obs(env);
   bool good = true;
   const Code code = m.attempt_task(env, [&] { good = m.observe(env, s.episode.step, next); });
@@ -144,6 +145,7 @@ Code Pool::Impl::begin_episode(int32_t env) {
   Slot& s = slots[env];
   Episode& e = s.episode;
   const Episode before = e;
+  ++s.course;
   // from the state that a new world has: nothing of the last episode is left in the engine
   const auto renew = [&] {
     Reader in(pristine, pristine_size, "pristine world");
@@ -265,12 +267,12 @@ void Pool::Impl::finish_step(int32_t env) {
   });
   if (code != Code::kOk) return lose_step(env, status | kStatusTask);
   if (!finite) return lose_step(env, status | kStatusDiverged);
-  if (disturbance.end_on_cost && costs_end(verdict)) verdict.terminated = true;
+  if (disturbance.end_on_cost && costs_count(verdict)) verdict.terminated = true;
   std::memcpy(obs(env), final_obs(env), sizeof(float) * static_cast<size_t>(obs_dim));
   close_step(env, verdict, status, false);
 }
 
-bool Pool::Impl::costs_end(const Verdict& verdict) const {
+bool Pool::Impl::costs_count(const Verdict& verdict) const {
   for (int32_t k = 0; k < cost_dim; ++k)
     if (verdict.cost[k] != 0 && (k == 0 || info->costs[k].limit >= 0)) return true;
   return false;
@@ -325,6 +327,7 @@ void Pool::Impl::count(int32_t env, uint32_t status) {
 
 void Pool::Impl::write_verdict(int32_t env, const Verdict& verdict, uint32_t status) {
   Episode& e = slots[env].episode;
+  slots[env].counters.violations += costs_count(verdict);
   const bool first = slots[env].taken == 1;  // of the control steps of this step
   const auto add = [&](float& sum, double value) {
     sum = first ? static_cast<float>(value) : sum + static_cast<float>(value);

@@ -10,6 +10,7 @@
 #include "base/fpmode.hpp"
 #include "base/hash.hpp"
 #include "base/option_rows.hpp"
+#include "env/copies.hpp"
 
 namespace rdm {
 namespace {
@@ -92,21 +93,7 @@ void Planner::read_options(const PlannerConfig& c) {
 void Planner::make_rollouts(const PlannerConfig& c) {
   const Pool& pool = *c.pool;
   const TaskInfo& info = task_at(pool.task_index());
-  // The rollouts' pool is the host's with its settings as lines, so options that a host gave hold there too;
-  // no pictures: a plan is judged by rewards and costs
-  constexpr char kBlind[] = "modality=state\n";
-  Vector<char> settings(pool.options().print_lines(nullptr, 0) + sizeof kBlind + 1);
-  const size_t length = pool.options().print_lines(settings.data(), settings.size());
-  settings[length] = '\n';
-  std::memcpy(settings.data() + length + 1, kBlind, sizeof kBlind);
-  PoolConfig rollouts;
-  rollouts.num_envs = settings_.samples;
-  rollouts.num_threads = c.num_threads > 0 ? c.num_threads : pool.config().num_threads;
-  rollouts.task = info.name;
-  rollouts.autoreset = Autoreset::kOff;
-  rollouts.settings = settings.data();
-  rollouts.hooks = hooks_;
-  rollouts_ = Pool::create(rollouts);
+  rollouts_ = make_copies(pool, settings_.samples, c.num_threads, hooks_);
   action_dim_ = pool.task().action_dim();
   cost_dim_ = pool.cost_dim();
   rule_.num_costs = cost_dim_;
