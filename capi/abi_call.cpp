@@ -37,6 +37,8 @@ const char* name_of(Tag tag) {
       return "actor";
     case Tag::kPlanner:
       return "planner";
+    case Tag::kShield:
+      return "shield";
     case Tag::kMap:
       return "map";
     case Tag::kRecording:

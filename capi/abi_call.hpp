@@ -65,7 +65,8 @@ enum class Tag : uint32_t {
   kRecording = 0x64636572,
   kPlanner = 0x6e616c70,
   kScene = 0x6e656373,
-  kWorld = 0x6c726f77
+  kWorld = 0x6c726f77,
+  kShield = 0x646c6873
 };
 const char* name_of(Tag tag);  // "pool"; NULL for what is no tag
 

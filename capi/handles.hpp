@@ -72,6 +72,7 @@ struct rdm_agent {
   rdm::Agent* agent = nullptr;
   rdm::Arena arena;
   DecisionBuffers decision;
+  rdm_shield* shield = nullptr;  // of its rollouts, a host's
 };
 
 namespace rdm::capi {

@@ -411,6 +411,7 @@ rdm_result rdm_pool_get_stats(const rdm_pool* p, rdm_pool_stats* io) {
     out.task_failed = s.task_failed;
     out.unconverged = s.unconverged;
     out.slowed = s.slowed;
+    out.violations = s.violations;
     out.solver_residual = s.solver_residual;
     write_struct(io, out, kFirstStatsSize, "io");
   });

@@ -1,5 +1,6 @@
 // Agents that learn from pools: what needs both halves.
 #include "capi/handles.hpp"
+#include "capi/shield.hpp"
 
 #if RDM_WITH_SIM && RDM_WITH_LEARN
 using namespace rdm;
@@ -24,7 +25,8 @@ void check_match(const AgentConfig& a, int32_t repeat, const Pool& p) {
          p.repeat());
 }
 
-// One decision: the action in the pool's buffer is held for `repeat` steps of the pool; a world whose episode
+// One decision: the action in the pool's buffer is held for `repeat` steps of the pool by the worlds in d.mask,
+// others have ended; a world whose episode
 // ends sits out the rest, so that every world has the same number of decisions.
 void hold_action(Pool& pool, DecisionBuffers& d, int32_t repeat, bool raw_costs) {
   const Buffers& b = pool.buffers();
@@ -36,7 +38,9 @@ void hold_action(Pool& pool, DecisionBuffers& d, int32_t repeat, bool raw_costs)
   std::fill_n(d.success, n, uint8_t{0});
   std::fill_n(d.status, n, uint32_t{0});
   for (size_t i = 0; i < n; ++i) {
-    d.mask[i] = d.valid[i] = 1;
+    d.valid[i] = 1;
+    d.terminated[i] = !d.mask[i];
+    d.truncated[i] = 0;
   }
   for (int32_t r = 0; r < repeat; ++r) {
     pool.step(d.mask);
@@ -64,6 +68,104 @@ void hold_action(Pool& pool, DecisionBuffers& d, int32_t repeat, bool raw_costs)
   }
 }
 
+// What an agent will do in the decisions to come.
+class AgentForesight final : public Foresight {
+ public:
+  explicit AgentForesight(const Agent& agent) : agent_(agent) {}
+  void begin(int32_t env, Stream* noise, float* offset) override { agent_.peek(env, noise, offset); }
+  void act(const int32_t* env, const float* obs, int32_t rows, Stream* noise, float* offset,
+           float* action) override {
+    agent_.foresee(env, obs, rows, noise, offset, action);
+  }
+
+ private:
+  const Agent& agent_;
+};
+
+// A shield between an agent that samples and the pool, for a rollout.
+class Shielded {
+ public:
+  Shielded(Agent& agent, Pool& pool, Shield* shield)
+      : agent_(agent), pool_(pool), shield_(shield), foresight_(agent) {
+    before_.violations = pool.stats().violations;
+    if (!shield) return;
+    if (agent.eyes().points)
+      fail(Code::kUnsupported, "shield: the agent's encoder needs points, which copies do not have");
+    if (shield->steps() * pool.repeat() != agent.action_repeat())
+      fail(Code::kArgument, "shield: its decisions last %d control steps, the agent's %d",
+           shield->steps() * pool.repeat(), agent.action_repeat());
+    how_ = agent.shield_learn();
+    penalty_ = static_cast<float>(agent.shield_penalty());
+    if (how_ == ShieldLearn::kCost && agent.config().cost_dim < 1)
+      fail(Code::kArgument, "shield_learn: cost, and the agent has none");
+    counts_ = shield->counts();
+    shield->forget_blocks();  // options, tensors or a policy may have been set
+  }
+
+  // The pool's action buffer holds the agent's samples, then what is to run in the worlds of d.mask.
+  void look(DecisionBuffers& d) {
+    std::fill_n(d.mask, pool_.config().num_envs, uint8_t{1});
+    if (!shield_) return;
+    for (int32_t i = 0; i < shield_->num_envs(); ++i) {
+      d.mask[i] = pool_.running(i);
+      if (!d.mask[i]) shield_->skip(i);  // its step only resets
+    }
+    float* action = pool_.buffers().action;
+    shield_->act(pool_, d.mask, action, &foresight_, action, how_ == ShieldLearn::kEnd);
+    const auto dim = static_cast<size_t>(shield_->action_dim());
+    for (int32_t i = 0; i < shield_->num_envs(); ++i) {
+      const bool ran = how_ == ShieldLearn::kApplied && refused(i);
+      if (ran || shield_->own_moved(i))
+        agent_.replace(i, ran ? action + static_cast<size_t>(i) * dim : shield_->own(i));
+      d.mask[i] = !ends(i);
+    }
+  }
+
+  // After the step: what of it is learned from.
+  void charge(DecisionBuffers& d) {
+    if (!shield_) return;
+    const auto costs = static_cast<size_t>(pool_.cost_dim());
+    for (int32_t i = 0; i < shield_->num_envs(); ++i) {
+      const auto e = static_cast<size_t>(i);
+      if (refused(i)) d.reward[e] -= penalty_;
+      if (how_ == ShieldLearn::kCost) d.cost[e * costs] = refused(i);
+      d.mask[e] = ends(i);
+    }
+    if (how_ == ShieldLearn::kEnd) pool_.reset(nullptr, d.mask);
+  }
+
+  void count(Epoch* out) const {
+    Ranks& ranks = agent_.ranks();
+    out->violations = ranks.total(pool_.stats().violations - before_.violations);
+    if (!shield_) return;
+    const ShieldCounts& now = shield_->counts();
+    const int64_t unproven = now.unproven - counts_.unproven;
+    out->refused = ranks.total(now.changed - counts_.changed + now.planned - counts_.planned + unproven);
+    out->unproven = ranks.total(unproven);
+    out->copied = ranks.total(now.copied - counts_.copied);
+    shield_->forget_blocks();
+  }
+
+ private:
+  bool refused(int32_t env) const { return shield_->row(env).kind != ShieldKind::kOwn; }
+  // What no plan avoids runs also where a refusal ends the episode: there is nothing to learn from it.
+  bool ends(int32_t env) const {
+    const bool inevitable = shield_->row(env).kind == ShieldKind::kUnproven && !shield_->without_plan(env);
+    return how_ == ShieldLearn::kEnd && refused(env) && !inevitable;
+  }
+
+  Agent& agent_;
+  Pool& pool_;
+  Shield* shield_;
+  AgentForesight foresight_;
+  ShieldLearn how_ = ShieldLearn::kOwn;
+  float penalty_ = 0;
+  ShieldCounts counts_;
+  struct {
+    int64_t violations = 0;
+  } before_;
+};
+
 // What the pool's worlds show to an agent with eyes.
 PointRows clouds_of(const Agent& agent, const Pool& pool) {
   const PointNetShape& eyes = agent.eyes();
@@ -86,7 +188,7 @@ PointRows clouds_of(const Agent& agent, const Pool& pool) {
   return clouds;
 }
 
-void rollout(Agent& agent, Pool& pool, DecisionBuffers& d, Epoch* out) {
+void rollout(Agent& agent, Pool& pool, Shield* shield, DecisionBuffers& d, Epoch* out) {
   check_match(agent.config(), agent.action_repeat(), pool);
   const PointRows clouds = clouds_of(agent, pool);
   agent.need_no_update("rollout");
@@ -94,6 +196,7 @@ void rollout(Agent& agent, Pool& pool, DecisionBuffers& d, Epoch* out) {
     fail(Code::kState, "agent: a horizon was begun by hand: finish it with record and update");
   agent.ranks().set_pool(pool.config().seed, static_cast<int32_t>(pool.config().autoreset),
                          pool.options_hash());
+  Shielded shielded(agent, pool, shield);
   const Buffers& b = pool.buffers();
   Transition t;
   t.reward = d.reward;
@@ -109,10 +212,13 @@ void rollout(Agent& agent, Pool& pool, DecisionBuffers& d, Epoch* out) {
     while (agent.missing() > 0) {
       agent.check_cancel();
       agent.act(b.obs, true, b.action, clouds);
+      shielded.look(d);
       hold_action(pool, d, agent.action_repeat() / pool.repeat(), agent.raw_costs());
+      shielded.charge(d);
       agent.record(t);
     }
     agent.update(b.obs, out);
+    shielded.count(out);
   } catch (...) {
     agent.drop_horizon();
     throw;
@@ -126,8 +232,17 @@ rdm_result rdm_agent_rollout(rdm_agent* a, rdm_pool* p, rdm_epoch* io) {
     const Use use(p);
     if (io) check_out(io, kFirstEpochSize, "io");
     Epoch e;
-    rollout(*a->agent, *p->pool, a->decision, &e);
+    const UseIfAny<rdm_shield> shield(a->shield);
+    rollout(*a->agent, *p->pool, a->shield ? a->shield->shield : nullptr, a->decision, &e);
     if (io) write_epoch(io, e);
+  });
+}
+
+rdm_result rdm_agent_set_shield(rdm_agent* a, rdm_shield* shield) {
+  return call_on(a, [&] {
+    if (shield) need_handle(shield);
+    if (a->agent->missing() != a->agent->horizon()) fail(Code::kState, "set_shield: a horizon has begun");
+    a->shield = shield;
   });
 }
 

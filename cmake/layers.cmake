@@ -40,7 +40,7 @@ endif()
 
 set(RDM_OFF_ROWS "")  # of what is switched off
 if(NOT REDMAN_SIM)
-  list(APPEND RDM_OFF_ROWS physics robot objects sense env plan tasks)
+  list(APPEND RDM_OFF_ROWS physics robot objects sense env plan shield tasks)
 endif()
 if(NOT REDMAN_LEARN)
   list(APPEND RDM_OFF_ROWS algos)

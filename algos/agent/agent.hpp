@@ -64,6 +64,13 @@ class Agent {
   // A decision that the policy of this generation took elsewhere, in the place of act and record. As act draws
   // nothing for it, the streams of noise stay where they are; all else is as if it had acted.
   void put(const float* obs, const float* action, const Transition& t);
+  // As Collector's of the same names: what is recorded in the place of a sample, and what will be sampled.
+  void replace(int32_t env, const float* action) { collector_.replace(env, action); }
+  void peek(int32_t env, Stream* noise, float* offset) const { collector_.peek(env, noise, offset); }
+  void foresee(const int32_t* env, const float* obs, int32_t rows, Stream* noise, float* offset,
+               float* action) const {
+    collector_.foresee(env, obs, rows, noise, offset, action);
+  }
   // As the critics see any rows, in the units of rewards and costs: value [rows] and cost
   // [rows][num_limited()], of the cost columns limited_column(i). Error(kUnsupported) where those are scaled
   // by what was seen.
@@ -95,6 +102,8 @@ class Agent {
 
   void set_option(const OptionInput& option);
   const Options& options() const { return resolved_.options; }
+  ShieldLearn shield_learn() const { return resolved_.shared.shield_learn; }
+  double shield_penalty() const { return resolved_.shared.shield_penalty; }
   bool tensor(int32_t index, TensorInfo* out);  // false past the end
   // After a write through TensorInfo::data. The actor's average begins again.
   void tensors_changed() {

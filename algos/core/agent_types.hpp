@@ -108,7 +108,11 @@ using CostValues = double[kMaxCosts];
   F(int64_t, bad_actions)       \
   F(int64_t, task_failed)       \
   F(int64_t, unconverged)       \
-  F(int64_t, slowed)
+  F(int64_t, slowed)            \
+  F(int64_t, violations)        \
+  F(int64_t, refused)           \
+  F(int64_t, unproven)          \
+  F(int64_t, copied)
 
 struct Epoch {
 #define RDM_MEMBER(type, member) type member{};

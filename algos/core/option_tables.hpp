@@ -71,6 +71,12 @@ inline constexpr auto kSharedRows = [] {
       row<&S::average>(number_option(
           "average", 0, 0, 0.9999,
           "share of its past in the actor's mean over epochs, which policy files hold; 0: none")),
+      row<&S::shield_learn, ShieldLearn::kOwn, ShieldLearn::kApplied, ShieldLearn::kCost,
+          ShieldLearn::kEnd>(text_option(
+          "shield_learn", "own", "own|applied|cost|end",
+          "a refused action teaches: own, applied (what ran), cost (of column 0) or end (of the episode)")),
+      row<&S::shield_penalty>(
+          number_option("shield_penalty", 0, 0, 1e6, "what a refused decision takes from the reward")),
       row<&S::normalize_obs>(basic(flag_option(
           "normalize_obs", true, "subtract the running mean of observations, divide by their deviation"))),
       row<&S::obs_clip>(number_option("obs_clip", 5, 0.1, 1e6, "bound on normalised observations")),

@@ -5,6 +5,7 @@
 namespace rdm {
 
 enum class RateKind : int32_t { kConstant, kLinear, kKl };
+enum class ShieldLearn : int32_t { kOwn, kApplied, kCost, kEnd };  // what a refused decision teaches
 
 // Texts are those of the Options that it was read from.
 struct SharedOptions {
@@ -29,6 +30,8 @@ struct SharedOptions {
   bool state_std;   // std_mode
   bool linear_std;  // std_schedule
   double average;
+  ShieldLearn shield_learn;
+  double shield_penalty;
   bool normalize_obs;
   double obs_clip, obs_count_max, obs_freeze;
   bool normalize_reward, normalize_cost;

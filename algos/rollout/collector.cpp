@@ -250,6 +250,35 @@ void Collector::put(const float* obs, const float* action, const Transition& t) 
   follow(t);
 }
 
+void Collector::replace(int32_t env, const float* action) {
+  Rollout& r = rollout_;
+  const size_t at = r.row(r.filled) + static_cast<size_t>(env), dim = r.action_dim;
+  const float* mean = r.mean + at * dim;
+  noise_.replace(env, mean, action, r.action + at * dim);
+  r.log_prob[at] = gaussian_log_prob(mean, r.log_std_of(at), r.action + at * dim, static_cast<int32_t>(dim));
+}
+
+void Collector::foresee(const int32_t* env, const float* obs, int32_t rows, Stream* noise, float* offset,
+                        float* action) const {
+  const size_t width = rollout_.obs_dim, dim = rollout_.action_dim;
+  workers_->sweep(rows, share(rows), [&](const Workspace& workspace, int32_t first, int32_t n) {
+    const auto at = static_cast<size_t>(first);
+    const float* x = normalized(obs + at * width, n, workspace.obs);
+    float *out = action + at * dim, *y = nets_->state_std() ? workspace.out : out;
+    nets_->forward_actor(x, {}, n, workspace.actor, y);  // that samples, not its average
+    float log_std[kMaxActions], own_std[kMaxActions];
+    for (size_t i = 0; i < static_cast<size_t>(n); ++i) {
+      float* mean = out + i * dim;
+      if (y != out) split_head(y + 2 * i * dim, 1, mean, log_std);
+      if (!noise) continue;
+      const float* std = std_;
+      if (y != out) kernels().map_exp(log_std, dim, own_std), std = own_std;
+      const auto e = static_cast<size_t>(env[at + i]);
+      noise_.foresee(mean, std, &noise[e], offset + e * dim, mean);
+    }
+  });
+}
+
 void Collector::value_rows(const float* obs, int32_t rows, float* value, float* cost_value) const {
   if (rows < 1) return;
   const size_t dim = resolved_->obs_dim(), costs = static_cast<size_t>(resolved_->num_limited);

@@ -34,6 +34,15 @@ class Collector {
   // A decision that was taken elsewhere by this policy: act and record, with its action in the place of a
   // sample. Changes nothing where it fails on what it is given.
   void put(const float* obs, const float* action, const Transition& t);
+  // Between act and record: the sample of an environment becomes another action, [action_dim] within
+  // +-Noise::kMaxAction, with its own density.
+  void replace(int32_t env, const float* action);
+  // What act will do next in worlds that show obs [rows][obs_dim], after a sampled act: of environments
+  // env [rows], by copies noise [num_envs] and offset [num_envs][action_dim] of their noise, which go on; null
+  // noise: the means. action [rows][action_dim]. Not of an agent with eyes.
+  void foresee(const int32_t* env, const float* obs, int32_t rows, Stream* noise, float* offset,
+               float* action) const;
+  void peek(int32_t env, Stream* noise, float* offset) const { noise_.peek(env, noise, offset); }
   // What the critics say of any rows obs [rows][obs_dim]: value [rows], cost_value [rows][num_limited].
   void value_rows(const float* obs, int32_t rows, float* value, float* cost_value) const;
   // Decisions still missing in this horizon.

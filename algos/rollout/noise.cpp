@@ -23,8 +23,12 @@ void Noise::reset(uint64_t seed, int32_t first) {
 }
 
 void Noise::sample(int32_t env, const float* mean, const float* std, float* action, float* centered) {
-  float* state = state_ + static_cast<size_t>(env) * static_cast<size_t>(dim_);
-  stream_[env].normals(centered, dim_);
+  draw(mean, std, &stream_[env], state_of(env), action, centered);
+}
+
+void Noise::draw(const float* mean, const float* std, Stream* stream, float* state, float* action,
+                 float* centered) const {
+  stream->normals(centered, dim_);
   for (int32_t j = 0; j < dim_; ++j) {
     const float fresh = std[j] * centered[j], offset = correlation_ * state[j];
     centered[j] = mean[j] + fresh;
@@ -33,9 +37,30 @@ void Noise::sample(int32_t env, const float* mean, const float* std, float* acti
   }
 }
 
+void Noise::peek(int32_t env, Stream* stream, float* offset) const {
+  *stream = stream_[env];
+  std::copy_n(state_of(env), dim_, offset);
+}
+
+void Noise::foresee(const float* mean, const float* std, Stream* stream, float* offset, float* action) const {
+  float centered[kMaxActions];
+  draw(mean, std, stream, offset, action, centered);
+}
+
+// The offset that the other one was drawn with is what its own share leaves of the state.
+void Noise::replace(int32_t env, const float* mean, const float* action, float* centered) {
+  constexpr auto kMost = static_cast<float>(kMaxNoise);
+  float* state = state_of(env);
+  for (int32_t j = 0; j < dim_; ++j) {
+    const float offset = state[j] - (centered[j] - mean[j]);
+    centered[j] = action[j] - offset;
+    state[j] = std::clamp(action[j] - mean[j], -kMost, kMost);
+  }
+}
+
 void Noise::take(int32_t env, const float* mean, const float* action, float* centered) {
   constexpr auto kMost = static_cast<float>(kMaxNoise);
-  float* state = state_ + static_cast<size_t>(env) * static_cast<size_t>(dim_);
+  float* state = state_of(env);
   for (int32_t j = 0; j < dim_; ++j) {
     centered[j] = action[j] - correlation_ * state[j];
     state[j] = std::clamp(action[j] - mean[j], -kMost, kMost);
@@ -43,7 +68,7 @@ void Noise::take(int32_t env, const float* mean, const float* action, float* cen
 }
 
 void Noise::end_episode(int32_t env) {
-  float* state = state_ + static_cast<size_t>(env) * static_cast<size_t>(dim_);
+  float* state = state_of(env);
   for (int32_t j = 0; j < dim_; ++j) state[j] = 0;
 }
 

@@ -18,12 +18,21 @@ class Noise {
   void sample(int32_t env, const float* mean, const float* std, float* action, float* centered);
   // Goes on from an action that was drawn elsewhere, within +-kMaxAction, by the same rule: centered likewise.
   void take(int32_t env, const float* mean, const float* action, float* centered);
+  // In the place of an action that was just drawn or taken, whose `centered` this is: likewise.
+  void replace(int32_t env, const float* mean, const float* action, float* centered);
+  // What sample will draw next of copies of an environment's stream and offset [action_dim]; both go on.
+  void peek(int32_t env, Stream* stream, float* offset) const;
+  void foresee(const float* mean, const float* std, Stream* stream, float* offset, float* action) const;
   static constexpr float kMaxAction = 1e5f;
   void end_episode(int32_t env);
   float correlation() const { return correlation_; }
   void visit(StateIo& io);
 
  private:
+  float* state_of(int32_t env) const { return state_ + static_cast<size_t>(env) * static_cast<size_t>(dim_); }
+  void draw(const float* mean, const float* std, Stream* stream, float* state, float* action,
+            float* centered) const;
+
   int32_t num_envs_ = 0, dim_ = 0;
   float correlation_ = 0;
   Stream* stream_ = nullptr;  // [num_envs]

@@ -295,6 +295,8 @@ typedef struct rdm_pool_stats { /* counts since create */
   double solver_residual;    /* m/s, what a contact's normal velocity was still wrong by when the
                               * last sweep of the last step came to it, the largest of all
                               * worlds; NaN: engine ode, not measured */
+  int64_t violations;        /* control steps so far in which column 0, or a cost with a limit by
+                              * the task, was above 0 */
 } rdm_pool_stats;
 RDM_API rdm_result rdm_pool_get_stats(const rdm_pool *p, rdm_pool_stats *io); /* fills io */
 /* World dst_env of dst (-1: all of them) becomes what world src_env of src is, at the price of

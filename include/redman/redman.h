@@ -76,9 +76,9 @@
  *   - An array whose comment says so may be NULL; a struct with struct_size that is no config is in
  *     and out.
  *   - `const char *` is a text that ends in 0. `rdm_pool *`, `rdm_agent *`, `rdm_policy *`,
- *     `rdm_actor *`, `rdm_recording *`, `rdm_planner *`, `rdm_map *`, `rdm_scene *` and
- *     `rdm_world *` are handles, through `**` new ones. `void *` with a shape is bytes; other ones
- *     are passed through.
+ *     `rdm_actor *`, `rdm_recording *`, `rdm_planner *`, `rdm_shield *`, `rdm_map *`,
+ *     `rdm_scene *` and `rdm_world *` are handles, through `**` new ones. `void *` with a shape is
+ *     bytes; other ones are passed through.
  *   - Text and bytes of any length come as (T *x, size_t capacity, size_t *size): x NULL asks for
  *     the size alone, a capacity below it is RANGE. The size of a text is without its 0, for which
  *     the capacity must have room.
@@ -97,6 +97,7 @@
 #include <redman/sense.h>  /* what worlds see, and who sees points                       */
 #include <redman/map.h>    /* what is occupied, free and unknown in space                */
 #include <redman/plan.h>   /* actors and planners: who chooses actions without learning  */
+#include <redman/shield.h> /* under which no cost exceeds its budget                     */
 #include <redman/record.h> /* trajectories as data, and what is learned from them        */
 #include <redman/ranks.h>  /* one learner of many processes                              */
 #include <redman/robot.h>  /* robots of your own                                         */

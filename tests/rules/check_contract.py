@@ -9,7 +9,7 @@ import re
 import subprocess
 import sys
 
-HANDLES = {"rdm_pool", "rdm_agent", "rdm_policy", "rdm_actor", "rdm_recording", "rdm_planner", "rdm_map", "rdm_scene", "rdm_world"}
+HANDLES = {"rdm_pool", "rdm_agent", "rdm_policy", "rdm_actor", "rdm_recording", "rdm_planner", "rdm_shield", "rdm_map", "rdm_scene", "rdm_world"}
 INTEGERS = {"int32_t", "uint32_t", "int64_t", "uint64_t", "size_t"}
 LENGTHS = {"capacity", "scratch_bytes", "note_size", "num_skip", "wanted", "error_size"}  # arguments that say how long another is
 NOT_COUNTED = {"rows", "w", "h"}  # lengths that are int32_t: of rows and pictures

@@ -163,6 +163,15 @@ class MapFormat(enum.IntEnum):
     FULL = 1
 
 
+class ShieldKind(enum.IntEnum):
+    """what a shield did with a proposed action"""
+
+    OWN = 0  # it went through
+    CHANGED = 1  # refused: another one, from which the way is clean
+    PLAN = 2  # refused: the next action of the plan that was made before
+    UNPROVEN = 3  # nothing that was tried is clean: with option unproven=least what exceeds the budgets least
+
+
 class RobotKind(enum.IntEnum):
     """of a robot"""
 
@@ -1090,6 +1099,7 @@ class PoolStats(Record):
     unconverged: int  # steps flagged RDM_STATUS_SOLVER so far
     slowed: int  # steps flagged RDM_STATUS_SLOWED so far
     solver_residual: float  # m/s, what a contact's normal velocity was still wrong by when the last sweep of the last step came to it, the largest of all worlds; NaN: engine ode, not measured
+    violations: int  # control steps so far in which column 0, or a cost with a limit by the task, was above 0
 
 
 class rdm_pool_stats(Structure):
@@ -1106,6 +1116,7 @@ class rdm_pool_stats(Structure):
     slowed: steps flagged RDM_STATUS_SLOWED so far
     solver_residual: m/s, what a contact's normal velocity was still wrong by when the last sweep of the last
         step came to it, the largest of all worlds; NaN: engine ode, not measured
+    violations: control steps so far in which column 0, or a cost with a limit by the task, was above 0
     """
 
     struct_size: int
@@ -1120,6 +1131,7 @@ class rdm_pool_stats(Structure):
     unconverged: int
     slowed: int
     solver_residual: float
+    violations: int
     _fields_ = [
         ("struct_size", c_uint32),
         ("contacts_max", c_int32),
@@ -1133,6 +1145,7 @@ class rdm_pool_stats(Structure):
         ("unconverged", c_int64),
         ("slowed", c_int64),
         ("solver_residual", c_double),
+        ("violations", c_int64),
     ]
 
 
@@ -1359,6 +1372,10 @@ class Epoch(Record):
     task_failed: int  # decisions flagged RDM_STATUS_TASK
     unconverged: int  # decisions flagged RDM_STATUS_SOLVER
     slowed: int  # decisions flagged RDM_STATUS_SLOWED
+    violations: int  # control steps in which column 0, or a cost with a limit by the task, was above 0; -1: not an epoch of rdm_agent_rollout
+    refused: int  # decisions that a shield did not let through; -1: there was none
+    unproven: int  # of these, where nothing was known to be clean; -1: likewise
+    copied: int  # control steps of the shield's copies; -1: likewise
 
 
 class rdm_epoch(Structure):
@@ -1403,6 +1420,11 @@ class rdm_epoch(Structure):
     task_failed: decisions flagged RDM_STATUS_TASK
     unconverged: decisions flagged RDM_STATUS_SOLVER
     slowed: decisions flagged RDM_STATUS_SLOWED
+    violations: control steps in which column 0, or a cost with a limit by the task, was above 0; -1: not an
+        epoch of rdm_agent_rollout
+    refused: decisions that a shield did not let through; -1: there was none
+    unproven: of these, where nothing was known to be clean; -1: likewise
+    copied: control steps of the shield's copies; -1: likewise
     """
 
     struct_size: int
@@ -1440,6 +1462,10 @@ class rdm_epoch(Structure):
     task_failed: int
     unconverged: int
     slowed: int
+    violations: int
+    refused: int
+    unproven: int
+    copied: int
     _fields_ = [
         ("struct_size", c_uint32),
         ("epoch", c_int32),
@@ -1476,6 +1502,10 @@ class rdm_epoch(Structure):
         ("task_failed", c_int64),
         ("unconverged", c_int64),
         ("slowed", c_int64),
+        ("violations", c_int64),
+        ("refused", c_int64),
+        ("unproven", c_int64),
+        ("copied", c_int64),
     ]
 
 
@@ -1965,6 +1995,145 @@ class rdm_plan_info(Structure):
         ("steps", c_int64),
         ("iterations", c_int32),
         ("reserved", c_int32),
+    ]
+
+
+class rdm_shield_config(Structure):
+    """struct_size: bytes, set by rdm_shield_config_init
+    num_threads: of the copies, 0 to 256; 0: as many as the pool has; default 0
+    pool: whose task, options and number of worlds it is for; required; not kept
+    seed: of noisy actions; default 0
+    policy: the first backup, as rdm_shield_add_policy; NULL: none
+    steps: of the pool that a decision lasts, 1 to 1000; 0: as long as the policy holds an action, 1 without;
+        default 0
+    reserved: 0
+    budgets: [cost_dim] on the sum of each cost over an episode, copied; < 0: the cost is not looked at; NULL: 0
+        for column 0, others are not looked at. Of what an episode had spent beyond it before, no more comes
+    options: [num_options] as rdm_shield_option_at lists them, copied; NULL: none
+    num_options: count, default 0
+    reserved2: 0
+    host: hooks of this handle, copied; NULL: those of rdm_init
+    settings: options as lines key=value, laid over `options`, copied; NULL: none
+    error: [error_size] the text of a failing call that takes this config; NULL
+    error_size: bytes, terminator included; what is longer is cut
+    reserved3: 0
+    """
+
+    struct_size: int
+    num_threads: int
+    pool: int | None
+    seed: int
+    policy: int | None
+    steps: int
+    reserved: int
+    budgets: int | None
+    options: Any
+    num_options: int
+    reserved2: int
+    host: Any
+    settings: bytes | None
+    error: int | None
+    error_size: int
+    reserved3: int
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("num_threads", c_int32),
+        ("pool", c_void_p),
+        ("seed", c_uint64),
+        ("policy", c_void_p),
+        ("steps", c_int32),
+        ("reserved", c_int32),
+        ("budgets", c_void_p),
+        ("options", POINTER(rdm_option)),
+        ("num_options", c_int32),
+        ("reserved2", c_int32),
+        ("host", POINTER(rdm_host)),
+        ("settings", c_char_p),
+        ("error", c_void_p),
+        ("error_size", c_int32),
+        ("reserved3", c_int32),
+    ]
+
+
+class ShieldRow(Record):
+    """The values of rdm_shield_row."""
+
+    kind: int  # RDM_SHIELD_*
+    column: int  # of what was refused: the cost that it would have met, -1: it was not, or the copy diverged
+    ahead: int  # control steps until that, 0: nothing was refused
+    backup: int  # that the plan goes on by: a policy's number, then zero, then hold, of those that it has; -1: no other way was looked for
+    planned: int  # decisions that its plan still has, with the one to come next
+
+
+class rdm_shield_row(Structure):
+    """struct_size: in: bytes
+    kind: RDM_SHIELD_*
+    column: of what was refused: the cost that it would have met, -1: it was not, or the copy diverged
+    ahead: control steps until that, 0: nothing was refused
+    backup: that the plan goes on by: a policy's number, then zero, then hold, of those that it has; -1: no
+        other way was looked for
+    planned: decisions that its plan still has, with the one to come next
+    """
+
+    struct_size: int
+    kind: int
+    column: int
+    ahead: int
+    backup: int
+    planned: int
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("kind", c_int32),
+        ("column", c_int32),
+        ("ahead", c_int32),
+        ("backup", c_int32),
+        ("planned", c_int32),
+    ]
+
+
+class ShieldStats(Record):
+    """The values of rdm_shield_stats."""
+
+    decisions: int  # count
+    inquiries: int  # decisions that copies were asked about
+    failed: int  # inquiries whose proposed way met a cost
+    changed: int  # decisions of RDM_SHIELD_CHANGED
+    planned: int  # of RDM_SHIELD_PLAN
+    unproven: int  # of RDM_SHIELD_UNPROVEN
+    copied: int  # control steps that copies took
+
+
+class rdm_shield_stats(Structure):
+    """struct_size: in: bytes
+    reserved: 0
+    decisions: count
+    inquiries: decisions that copies were asked about
+    failed: inquiries whose proposed way met a cost
+    changed: decisions of RDM_SHIELD_CHANGED
+    planned: of RDM_SHIELD_PLAN
+    unproven: of RDM_SHIELD_UNPROVEN
+    copied: control steps that copies took
+    """
+
+    struct_size: int
+    reserved: int
+    decisions: int
+    inquiries: int
+    failed: int
+    changed: int
+    planned: int
+    unproven: int
+    copied: int
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_int32),
+        ("decisions", c_int64),
+        ("inquiries", c_int64),
+        ("failed", c_int64),
+        ("changed", c_int64),
+        ("planned", c_int64),
+        ("unproven", c_int64),
+        ("copied", c_int64),
     ]
 
 
@@ -3262,6 +3431,9 @@ STRUCTS: dict[str, type[Structure]] = {
     "rdm_planner_config": rdm_planner_config,
     "rdm_planner_spec": rdm_planner_spec,
     "rdm_plan_info": rdm_plan_info,
+    "rdm_shield_config": rdm_shield_config,
+    "rdm_shield_row": rdm_shield_row,
+    "rdm_shield_stats": rdm_shield_stats,
     "rdm_recording_config": rdm_recording_config,
     "rdm_recording_info": rdm_recording_info,
     "rdm_recording_rows": rdm_recording_rows,
@@ -3347,6 +3519,9 @@ ROWS: dict[str, dict[str, Rows]] = {
     "rdm_planner_config": {
         "noise": Rows("float32", ("action_dim",)),
         "cost_limits": Rows("float64", ("cost_dim",)),
+    },
+    "rdm_shield_config": {
+        "budgets": Rows("float64", ("cost_dim",)),
     },
     "rdm_recording_rows": {
         "obs": Rows("float32", ("rows", "obs_dim")),
@@ -4356,6 +4531,111 @@ FUNCTIONS: dict[str, Function] = {
         discounted sum of rewards to come, and the same of the cost columns that it limits,
         cost [rows][RDM_MAX_COSTS] by column, others 0; cost may be NULL. UNSUPPORTED with options
         normalize_reward or normalize_cost, which leave critics no unit.
+        """),
+    "rdm_shield_config_init": Function(
+        c_int32, {"c": POINTER(rdm_shield_config), "size": c_size_t},
+        {}, True,
+        """Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first
+        version's.
+        """),
+    "rdm_shield_create": Function(
+        c_int32, {"out": POINTER(c_void_p), "c": POINTER(rdm_shield_config)},
+        {}, True,
+        """Makes the shield and its copies. ARGUMENT, RANGE, NOT_FOUND name what is wrong; of the policy as
+        rdm_shield_add_policy.
+        """),
+    "rdm_shield_add_policy": Function(
+        c_int32, {"shield": c_void_p, "policy": c_void_p},
+        {}, True,
+        """One backup more, behind the policies that it has: its mean actions. It must outlive the shield.
+        VERSION_MISMATCH for one that does not fit the pool, ARGUMENT for one that holds its actions for
+        another time than a decision, UNSUPPORTED for one that sees points, RANGE from the seventh on or
+        where option tries is too small. Plans stay.
+        """),
+    "rdm_shield_destroy": Function(
+        None, {"shield": c_void_p},
+        {}, True,
+        """NULL is fine"""),
+    "rdm_shield_error": Function(
+        c_char_p, {"shield": c_void_p},
+        {}, True,
+        """last failure on this handle; ""
+        at first
+        """),
+    "rdm_shield_option_at": Function(
+        c_int32, {"i": c_int32, "io": POINTER(rdm_option_spec)},
+        {}, True,
+        """Option i of shields: block, look, tries, rounds, noise, zero, hold, unproven. RANGE past the
+        end.
+        """),
+    "rdm_shield_get_settings": Function(
+        c_int32, {"shield": c_void_p, "text": c_void_p, "capacity": c_size_t, "size": c_void_p},
+        {}, True,
+        """All options as text [capacity] of lines key=value: given as settings they make a shield of the
+        same options.
+        """),
+    "rdm_shield_act": Function(
+        c_int32, {"shield": c_void_p, "pool": c_void_p, "mask": c_void_p, "proposed": c_void_p, "action": c_void_p},
+        {"mask": Rows("uint8", ("num_envs",)), "proposed": Rows("float32", ("num_envs", "action_dim")), "action": Rows("float32", ("num_envs", "action_dim"))}, True,
+        """action [num_envs][action_dim] for a decision of the worlds whose mask [num_envs] is not 0 (NULL:
+        all), where proposed [num_envs][action_dim] is what each would do; the two may be the same array,
+        and rows of other worlds are not written. The pool is only read; it has the task, options and
+        number of worlds of the one that the shield was made for, else ARGUMENT. The action is then held
+        for config.steps steps of the pool. A world whose episode began anew, or whose state was set, is
+        noticed. STATE for a world without an episode, and for one in which nothing that was tried is
+        clean, which the text names: nothing is written then.
+        """),
+    "rdm_shield_get_row": Function(
+        c_int32, {"shield": c_void_p, "pool": c_void_p, "env": c_int32, "io": POINTER(rdm_shield_row)},
+        {}, True,
+        """What was done in the last decision of world env."""),
+    "rdm_shield_get_plan": Function(
+        c_int32, {"shield": c_void_p, "pool": c_void_p, "env": c_int32, "plan": c_void_p, "capacity": c_size_t, "size": c_void_p},
+        {"plan": Rows("float32", ("capacity",))}, True,
+        """The plan of world env as it is to plan [capacity] numbers, a row of action_dim for each decision
+        from now to the end; *size is how many numbers there are, 0: it has none.
+        """),
+    "rdm_shield_get_stats": Function(
+        c_int32, {"shield": c_void_p, "io": POINTER(rdm_shield_stats)},
+        {}, True,
+        """The plan of world env as it is to plan [capacity] numbers, a row of action_dim for each decision
+        from now to the end; *size is how many numbers there are, 0: it has none.
+        """),
+    "rdm_shield_reset": Function(
+        c_int32, {"shield": c_void_p, "mask": c_void_p},
+        {"mask": Rows("uint8", ("num_envs",))}, True,
+        """Forgets the plans of the worlds whose mask [num_envs] is not 0; NULL: all."""),
+    "rdm_shield_write_state": Function(
+        c_int32, {"shield": c_void_p, "bytes": c_void_p, "capacity": c_size_t, "size": c_void_p},
+        {}, True,
+        """Plans, noise and counts as bytes [capacity]; NULL asks for the size. A shield of the same config
+        that reads them goes on with the same bytes, beside a pool that was set to the state of that
+        moment.
+        """),
+    "rdm_shield_read_state": Function(
+        c_int32, {"shield": c_void_p, "bytes": c_void_p, "size": c_size_t},
+        {}, True,
+        """Of bytes [size]. FORMAT for bytes that are not whole, or of another shield: nothing changes."""),
+    "rdm_agent_set_shield": Function(
+        c_int32, {"a": c_void_p, "shield": c_void_p},
+        {}, True,
+        """rdm_agent_rollout lets the shield look at every decision from now on; NULL: none any more. The
+        shield is for a pool of as many worlds, its decisions last as long as the agent's, else rollouts
+        return ARGUMENT; it must outlive the agent, or be taken off before. Its first backup is then what
+        the agent itself would do without noise. The agent's noise is foreseen for option block decisions
+        at once: where statistics of observations have moved since, what was foreseen runs and is learned
+        from, with its own density. What is learned from what it refuses is the agent's option
+        shield_learn:
+
+          own      the agent's own action and density, with what came of the one that ran
+          applied  the action that ran, with its density
+          cost     own, and the cost of column 0 is 1 for each refused decision; the limit on that
+                   column is then of refusals in an episode: option cost_limit, 1 by default
+          end      the episode ends before the action runs (a reward of 0, terminated), and the world
+                   begins another; where rewards are below 0 use shield_penalty, or ending is attractive
+
+        shield_penalty is taken from the reward of refused decisions with each. Plans are state: a run
+        that is resumed to the byte saves the shield's, too. STATE inside a horizon.
         """),
     "rdm_recording_config_init": Function(
         c_int32, {"c": POINTER(rdm_recording_config), "size": c_size_t},

@@ -1,0 +1,80 @@
+// redman/shield.hpp: owner of a shield. C++17, experimental.
+//
+//   redman::Shield shield(redman::shield_config(pool, &policy));
+//   policy.act(pool.obs().data(), n, nullptr, pool.action().data());
+//   shield.act(pool);  pool.step();
+#ifndef REDMAN_SHIELD_HPP
+#define REDMAN_SHIELD_HPP
+#include <redman/shield.h>
+
+#include <redman/agent.hpp>
+#include <redman/policy.hpp>
+#include <redman/pool.hpp>
+
+namespace redman {
+
+// The defaults of rdm_shield_config_init for a pool's worlds, with a first backup and options as
+// lines key=value; all are borrowed, the policy as long as the shield lives.
+inline rdm_shield_config shield_config(const Pool& pool, const Policy* policy = nullptr,
+                                       const char* settings = nullptr) {
+  rdm_shield_config c;
+  check(rdm_shield_config_init(&c, sizeof c));
+  c.pool = pool.get();
+  c.policy = policy ? policy->get() : nullptr;
+  c.settings = settings;
+  return c;
+}
+
+class Shield {
+ public:
+  explicit Shield(const rdm_shield_config& config) : handle_(made(rdm_shield_create, &config)) {}
+  rdm_shield* get() const { return handle_.get(); }
+  void add(const Policy& policy) { check(rdm_shield_add_policy(get(), policy.get())); }  // borrowed
+  // action [num_envs][action_dim] of worlds in the mask (null: all) for what is proposed.
+  void act(const Pool& pool, const float* proposed, float* action, const uint8_t* mask = nullptr) {
+    check(rdm_shield_act(get(), pool.get(), mask, proposed, action));
+  }
+  // The pool's own row of actions.
+  void act(Pool& pool, const uint8_t* mask = nullptr) {
+    act(pool, pool.action().data(), pool.action().data(), mask);
+  }
+  rdm_shield_row row(const Pool& pool, int32_t env) const {
+    auto row = sized<rdm_shield_row>();
+    check(rdm_shield_get_row(get(), pool.get(), env, &row));
+    return row;
+  }
+  // [decisions][action_dim], empty where there is none.
+  std::vector<float> plan(const Pool& pool, int32_t env) const {
+    size_t count = 0;
+    check(rdm_shield_get_plan(get(), pool.get(), env, nullptr, 0, &count));
+    std::vector<float> out(count);
+    check(rdm_shield_get_plan(get(), pool.get(), env, out.data(), out.size(), &count));
+    return out;
+  }
+  rdm_shield_stats stats() const {
+    auto stats = sized<rdm_shield_stats>();
+    check(rdm_shield_get_stats(get(), &stats));
+    return stats;
+  }
+  void reset(const uint8_t* mask = nullptr) { check(rdm_shield_reset(get(), mask)); }
+  std::string settings() const {
+    return text_of(rdm_shield_get_settings, static_cast<const rdm_shield*>(get()));
+  }
+  Bytes state() const {
+    return bytes_of(rdm_shield_write_state, static_cast<const rdm_shield*>(get()));
+  }
+  void set_state(const Bytes& bytes) {
+    check(rdm_shield_read_state(get(), bytes.data(), bytes.size()));
+  }
+
+ private:
+  Handle<rdm_shield, rdm_shield_destroy> handle_;
+};
+
+// The agent's rollouts go under the shield, which is borrowed; null: under none any more.
+inline void set_shield(Agent& agent, Shield* shield) {
+  check(rdm_agent_set_shield(agent.get(), shield ? shield->get() : nullptr));
+}
+
+}  // namespace redman
+#endif

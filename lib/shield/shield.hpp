@@ -1,0 +1,236 @@
+// The predictive shield: an action goes through only where a copy of its world, going on by a known plan, keeps
+// within the budget of every cost until its episode ends. Mirrors rdm_shield_*.
+//
+// A plan is the decisions of a world from now to its episode's end, as actions, that were run in a copy. Copies
+// are exact, so what was clean there is clean here, and after each decision the rest of the plan is a plan: by
+// induction no cost ever goes beyond its budget, whatever is proposed, once there is a first plan.
+//
+// For each world, with the action a that is proposed for it:
+//   follow    a is the plan's next action to the bit, or the decision is of a block: nothing is tried
+//   inquire   a, the decisions that a foresight sees behind it (B together), then the first backup: run in a
+//             copy, with the state before each decision kept. Clean: this is the plan, and the B are a block
+//   branch    the cost came in decision f: from the state before decision j, for j = f, f-1, f-2, f-4, ... 0,
+//             each backup, or a noisy action and then the first backup. The first that is clean, with the
+//             latest j: decisions 0..j-1 as they were and then this are the plan; decision j is refused
+//   plan      nothing is clean: what is left of the plan before goes on; decision 0 is refused
+//   unproven  nor is there a plan, which only a start can bring, or a finite `look`: an error, or with
+//             unproven=least the way that exceeds the budgets least
+// Asking for 16 decisions at once takes an eleventh of the copied steps that asking for each of them does.
+//
+// A budget is of an episode. What was spent beyond it before the shield could help stays spent: the bound is
+// then what was spent.
+#pragma once
+#include "base/rng.hpp"
+#include "shield/copies_tried.hpp"
+
+namespace rdm {
+
+const OptionSpec* shield_options(int32_t* count);
+
+// A backup: the mean action of a frozen policy; a view of what somebody else owns.
+class ShieldPolicy {
+ public:
+  virtual void act(const float* obs, int32_t rows, float* action) = 0;
+
+ protected:
+  ~ShieldPolicy() = default;
+};
+
+// What will be proposed in the decisions to come, by the one who proposed the first.
+class Foresight {
+ public:
+  // Noise of world `env` behind the decision that was proposed: its stream and offset [action_dim].
+  virtual void begin(int32_t env, Stream* noise, float* offset) = 0;
+  // The next decision of worlds env [rows], of obs [rows][obs_dim]: action [rows][action_dim]. noise
+  // [num_envs] and offset [num_envs][action_dim] are those of begin, and go on; null: without noise.
+  virtual void act(const int32_t* env, const float* obs, int32_t rows, Stream* noise, float* offset,
+                   float* action) = 0;
+
+ protected:
+  ~Foresight() = default;
+};
+
+struct ShieldConfig {
+  const Pool* pool = nullptr;       // whose task, options and number of worlds the copies have; not kept
+  int32_t num_threads = 0;          // of the copies; 0: as many as the pool's
+  uint64_t seed = 0;                // of noisy branches
+  int32_t steps = 1;                // of the pool, that a decision is held
+  const double* budgets = nullptr;  // [cost_dim] of an episode, < 0: not looked at; null: 0 for column 0
+  const OptionInput* options = nullptr;
+  int32_t num_options = 0;
+  const char* settings = nullptr;
+  HostHooks hooks;
+};
+
+enum class ShieldKind : int32_t {
+  kOwn = 0,       // what was proposed
+  kChanged = 1,   // refused: another action, from which the way is clean
+  kPlan = 2,      // refused: the next action of the plan before
+  kUnproven = 3,  // nothing that was tried is clean
+};
+
+// What the shield says of a world's last decision.
+struct ShieldRow {
+  ShieldKind kind = ShieldKind::kOwn;
+  int32_t column = -1;  // cost that the refused way would have met; -1: nothing was refused, or it diverged
+  int32_t ahead = 0;    // control steps until then
+  int32_t backup = -1;  // that the plan goes on by: policies, then zero, then hold, then what the foresight
+                        // would do without noise; -1: no branch
+};
+
+struct ShieldCounts {
+  int64_t decisions = 0, inquiries = 0, failed = 0;  // failed: those whose first way was not clean
+  int64_t changed = 0, planned = 0, unproven = 0;    // decisions of each kind
+  int64_t copied = 0;                                // control steps of copies
+};
+
+struct ShieldOptions {
+  int32_t block, look, tries, rounds;
+  double noise;
+  bool best, zero, hold, least;
+};
+
+class Shield {
+ public:
+  static constexpr int32_t kMostPolicies = 6;
+
+  static Shield* create(const ShieldConfig& config);
+  static void destroy(Shield* s);
+  void add_policy(ShieldPolicy* policy);  // a backup behind those that it has; it outlives the shield
+
+  // What the worlds of `pool` whose mask is not 0 (null: all) are to do in this decision: action
+  // [num_envs][action_dim], which may be `proposed`. With a foresight the decisions of a block are as it
+  // foresaw them, and what it would do without noise is the first backup. Error(kState) for a world without an
+  // episode, or that has nothing clean, which it names: no action is written then. With `unneeded` the host
+  // does not run what is refused: with unproven=error nothing clean is no error then, and the action is what
+  // was proposed. No heap use.
+  void act(const Pool& pool, const uint8_t* mask, const float* proposed, Foresight* foresight, float* action,
+           bool unneeded = false);
+  void forget(const uint8_t* mask);  // plans of worlds whose mask is not 0 (null: all)
+  void skip(int32_t env);            // a world without an episode: its last decision is its own
+  void forget_blocks();              // only what was foreseen: its policy has changed
+  const ShieldRow& row(int32_t env) const { return rows_[env]; }
+  // What counts as proposed in the last decision, [action_dim]: of a block, what was foreseen.
+  const float* own(int32_t env) const { return own_ + row_of(env); }
+  bool own_moved(int32_t env) const { return moved_[env] != 0; }  // it is not what was proposed, to the bit
+  // No plan has decided: what was proposed is unproven, and so is all else.
+  bool without_plan(int32_t env) const { return plans_[env].length == 0; }
+  // The plan of a world from now on: *count decisions of [action_dim]; 0: there is none.
+  const float* plan(const Pool& pool, int32_t env, int32_t* count) const;
+  const ShieldCounts& counts() const { return counts_; }
+
+  int32_t num_envs() const { return n_; }
+  int32_t action_dim() const { return dim_; }
+  int32_t cost_dim() const { return costs_; }
+  int32_t steps() const { return steps_; }
+  int32_t length() const { return length_; }  // decisions of a plan, at most
+  const Options& options() const { return options_; }
+
+  // Plans, streams and counts: a shield of the same config that reads them goes on with the same bytes, beside
+  // a pool that was set to the state of that moment.
+  void write_state(Writer& out) const;
+  void read_state(const void* bytes, size_t size);  // Error(kFormat): unchanged
+
+  explicit Shield(const ShieldConfig& config);
+  ~Shield();
+
+ private:
+  struct Plan {
+    uint32_t course;          // Pool::course of its world
+    int32_t begin;            // the episode's control step before its first decision
+    int32_t length;           // decisions; 0: there is none
+    int32_t block;            // of these, that are not asked about again while the same one foresees them
+    int32_t refused;          // of these, in the place of what was proposed; -1: none
+    int32_t backup;           // that it goes on by, as in ShieldRow
+    int32_t column, cost_in;  // what the refused way met, and the episode's control step
+    uint8_t dirty;            // it exceeds budgets
+    uint8_t kept;             // the refusal is of a plan that was there before
+    uint8_t adopt;            // it came from a state: its course is the one that its world has then
+    uint8_t unused;
+  };
+  // Of a world that is asked about: its first way, and where that branches.
+  struct Inquiry {
+    int32_t env;
+    int32_t way, samples;     // decisions of the first way; those that were proposed or foreseen
+    int32_t tail;             // of the winner, behind its first `from`
+    int32_t fail;             // decision in which it met a cost; -1: clean
+    int32_t column, cost_in;  // which, and in which control step
+    int32_t reserve;          // branches at the front that are taken only where no other is clean
+    int32_t next;             // branch that is tried next
+    int32_t winner;           // -1: none so far
+    int32_t from, backup;     // of the winner
+    double ret;               // and its episode's return
+    bool over, least;         // the first way has ended; the winner exceeds budgets
+  };
+  struct Branch {
+    int32_t from = 0, backup = -1;  // -1: there are no more
+    double noise = 0;               // of its first action, in units of option noise
+  };
+
+  void read_options(const ShieldConfig& config);
+  void need_tries(int32_t backups) const;
+  void carve(Arena& arena);
+  uint64_t fingerprint() const;
+  size_t row_of(int32_t i) const { return static_cast<size_t>(i) * static_cast<size_t>(dim_); }
+  size_t plan_of(int32_t i) const { return row_of(i) * static_cast<size_t>(length_); }
+  int32_t kept_of(int32_t env, int32_t d) const { return env * (set_.block + 1) + d; }
+
+  // The decision of its plan that a world is at; -1: the plan is none of its episode as it is.
+  int32_t place(const Pool& pool, int32_t env) const;
+  bool follows(const Pool& pool, int32_t env, const float* proposed, bool foreseen);
+  void give(const Pool& pool, int32_t env, const float* proposed, bool asked, bool foreseen, float* action);
+  void order_backups(Foresight* foresight);
+  void inquire(const Pool& pool, const float* proposed, bool unneeded);
+  void run_first(const Pool& pool, const float* proposed);
+  // Of the worlds list_ [rows], what will be proposed.
+  void foresee(int32_t rows);
+  void read_fate(Inquiry* q, int32_t d, bool proposed);
+  Branch branch_of(const Inquiry& q, int32_t number) const;
+  void try_branches(const Pool& pool);
+  void start_branch(int32_t env, int32_t i, const Branch& b);
+  void run_branches(bool stop_at_cost);
+  void choose(Inquiry* q, int32_t i);
+  void take(Inquiry* q, int32_t i);
+  bool worse(int32_t a, int32_t b) const;
+  void try_least(const Pool& pool, bool unneeded);
+  void adopt(const Pool& pool, const Inquiry& q);
+  // Of the copies that go, the actions of backup[i] into their rows.
+  void back_up(CopiesTried* copies, const int32_t* backup);
+  void ask_backup(int32_t backup, const CopiesTried& copies, int32_t rows);
+
+  HostHooks hooks_;
+  Options options_;
+  ShieldOptions set_{};
+  ShieldPolicy* policies_[kMostPolicies] = {};
+  int32_t num_policies_ = 0, num_own_ = 0;  // backups that the shield has whoever proposes
+  // Of this call: who foresees, and the backups in the order in which they are tried.
+  Foresight* foresight_ = nullptr;
+  int32_t order_[kMostPolicies + 3] = {}, num_order_ = 0;
+  int32_t n_ = 0, dim_ = 0, obs_ = 0, costs_ = 0, steps_ = 1, stride_ = 1, length_ = 0;
+  double budget_[kMaxTaskCosts] = {};
+  ShieldCounts counts_;
+  CopiesTried first_, tried_;  // [n] the first ways; [n][tries] branches
+  Pool* kept_ = nullptr;       // [n][block + 1] states before each decision of a first way
+
+  Arena arena_;
+  float *zero_ = nullptr, *hold_ = nullptr;  // [dim]
+  Plan* plans_ = nullptr;                    // [n]
+  ShieldRow* rows_ = nullptr;                // [n]
+  Inquiry* inquiries_ = nullptr;             // [n], of which num_asked_, by rising env
+  int32_t num_asked_ = 0;
+  float *own_ = nullptr, *refused_ = nullptr;                 // [n][dim]
+  uint8_t* moved_ = nullptr;                                  // [n]
+  float *plan_ = nullptr, *way_ = nullptr, *tail_ = nullptr;  // [n][length][dim]
+  double* bound_ = nullptr;                                   // [n][costs]
+  Stream *noise_ = nullptr, *foreseen_ = nullptr;             // [n] of branches; of what a foresight draws
+  float* offset_ = nullptr;                                   // [n][dim] likewise
+  // Branches, [n tries]: their decisions [length][dim], backups, first decisions, numbers, how many decisions
+  // they went on for, noise of the first one.
+  float* branch_ = nullptr;
+  int32_t *backup_ = nullptr, *from_ = nullptr, *number_ = nullptr, *lived_ = nullptr;
+  double* width_ = nullptr;
+  int32_t* list_ = nullptr;                          // [n tries]
+  float *obs_rows_ = nullptr, *act_rows_ = nullptr;  // [n tries][obs], [n tries][dim]
+};
+
+}  // namespace rdm
