@@ -372,7 +372,7 @@ rdm_result rdm_agent_set_option(rdm_agent* a, const rdm_option* option) {
   });
 }
 
-rdm_result rdm_agent_option_at(const rdm_agent* a, int32_t i, const char** key, char* text) {
+rdm_result rdm_agent_setting_at(const rdm_agent* a, int32_t i, const char** key, char* text) {
   return call_on(a, [&] { give_option(a->agent->options(), i, key, text, "rdm_agent_get_settings"); });
 }
 

@@ -279,7 +279,7 @@ rdm_result rdm_pool_field_at(const rdm_pool* p, int32_t i, rdm_field_info* io) {
   });
 }
 
-rdm_result rdm_pool_option_at(const rdm_pool* p, int32_t i, const char** key, char* text) {
+rdm_result rdm_pool_setting_at(const rdm_pool* p, int32_t i, const char** key, char* text) {
   return call_on(p, [&] { give_option(p->pool->options(), i, key, text, "rdm_pool_get_settings"); });
 }
 

@@ -57,7 +57,7 @@ function print_head() {
 }
 { sub(/\r$/, "") }
 names && /^rdm_[a-z_0-9]+$/ && half_of($0, "") != "" { print; next }
-old && /defined\(RDM_EXPERIMENTAL\)/ { exit }  # no symbols for those
+old && /names that no release had/ { exit }  # no symbols for those, and the experimental ones behind them
 old && /^static inline/ { body = " "; next }
 old && body != "" {
   body = body == " " ? $0 : body "\n" $0

@@ -3,7 +3,7 @@
 # begin with struct_size may grow at their ends.
 BEGIN { if (mode == "functions") print "#define RDM_NO_DEPRECATED\n#include <redman/deprecated.h>\n#pragma GCC diagnostic ignored \"-Wunused-parameter\"" }
 FNR == 1 { old = FILENAME ~ /deprecated/; ended = 0 }
-old && /^#if defined\(RDM_EXPERIMENTAL\)/ { ended = 1 }
+old && /names that no release had/ { ended = 1 }
 ended { next }
 old && /^  RDM_[A-Z_0-9]+ RDM_DEPRECATED/ {  # RDM_BOX RDM_DEPRECATED("RDM_SHAPE_BOX") = RDM_SHAPE_BOX,
   value = $NF

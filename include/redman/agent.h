@@ -225,10 +225,11 @@ RDM_API void rdm_agent_cancel(rdm_agent *a);
 RDM_API rdm_result rdm_agent_discard(rdm_agent *a);
 /* Changes a live option. NOT_FOUND, RANGE, or STATE when it is not live. */
 RDM_API rdm_result rdm_agent_set_option(rdm_agent *a, const rdm_option *option);
-/* Option i of the algorithm as this agent has it: key (static) and the value as
+/* What option i of the algorithm is in this agent: key (static) and the value as
  * text [RDM_TEXT_SIZE], which reads back exactly. RANGE for a text that is longer:
  * rdm_agent_get_settings has it. */
-RDM_API rdm_result rdm_agent_option_at(const rdm_agent *a, int32_t i, const char **key, char *text);
+RDM_API rdm_result rdm_agent_setting_at(const rdm_agent *a, int32_t i, const char **key,
+                                        char *text);
 /* All options as text [capacity] of lines key=value: given as settings they make an agent of the
  * same options. */
 RDM_API rdm_result rdm_agent_get_settings(const rdm_agent *a, char *text, size_t capacity,

@@ -1,4 +1,4 @@
-/* redman/deprecated.h: the names of 0.1. Each is, or calls, what its warning names.
+/* redman/deprecated.h: the names of 0.1, and some since. Each is, or calls, what its warning names.
  *
  * Included by redman.h unless RDM_NO_DEPRECATED is defined; it goes with 1.1. The symbols stay in
  * the library as long as RDM_ABI: capi/stubs.awk writes them from the functions of the first part.
@@ -249,9 +249,9 @@ rdm_result rdm_pool_initial_mean(const rdm_pool *p, float *action) {
   return rdm_pool_get_initial_mean(p, action);
 }
 
-static inline RDM_DEPRECATED("rdm_pool_option_at")
+static inline RDM_DEPRECATED("rdm_pool_setting_at")
 rdm_result rdm_pool_option(const rdm_pool *p, int32_t i, const char **key, char *text) {
-  return rdm_pool_option_at(p, i, key, text);
+  return rdm_pool_setting_at(p, i, key, text);
 }
 
 static inline RDM_DEPRECATED("rdm_pool_get_settings")
@@ -342,9 +342,9 @@ rdm_result rdm_agent_set(rdm_agent *a, const rdm_option *option) {
   return rdm_agent_set_option(a, option);
 }
 
-static inline RDM_DEPRECATED("rdm_agent_option_at")
+static inline RDM_DEPRECATED("rdm_agent_setting_at")
 rdm_result rdm_agent_option(const rdm_agent *a, int32_t i, const char **key, char *text) {
-  return rdm_agent_option_at(a, i, key, text);
+  return rdm_agent_setting_at(a, i, key, text);
 }
 
 static inline RDM_DEPRECATED("rdm_agent_get_settings")
@@ -386,6 +386,17 @@ rdm_result rdm_agent_save(const rdm_agent *a, void *bytes, size_t capacity, size
 static inline RDM_DEPRECATED("rdm_agent_read_state")
 rdm_result rdm_agent_load(rdm_agent *a, const void *bytes, size_t size) {
   return rdm_agent_read_state(a, bytes, size);
+}
+
+/* ---- names that no release had: no symbols --------------------------------------------------- */
+static inline RDM_DEPRECATED("rdm_pool_setting_at")
+rdm_result rdm_pool_option_at(const rdm_pool *p, int32_t i, const char **key, char *text) {
+  return rdm_pool_setting_at(p, i, key, text);
+}
+
+static inline RDM_DEPRECATED("rdm_agent_setting_at")
+rdm_result rdm_agent_option_at(const rdm_agent *a, int32_t i, const char **key, char *text) {
+  return rdm_agent_setting_at(a, i, key, text);
 }
 #endif /* REDMAN_AGENT_H */
 #endif /* RDM_NO_DEPRECATED */

@@ -172,10 +172,10 @@ RDM_API rdm_result rdm_pool_field_at(const rdm_pool *p, int32_t i,
 /* Mean action [action_dim] that a new policy starts from: the task's start pose, seldom that of
  * RDM_BASELINE_HOLD. */
 RDM_API rdm_result rdm_pool_get_initial_mean(const rdm_pool *p, float *action);
-/* Option i of the task as this pool has it: key and the value as text [RDM_TEXT_SIZE], which reads
+/* What option i of the task is in this pool: key and the value as text [RDM_TEXT_SIZE], which reads
  * back exactly. RANGE for a text that is longer: rdm_pool_get_settings has it. Behind the task's
  * num_options come keys with a FIELD that were set, in order; RANGE ends them. */
-RDM_API rdm_result rdm_pool_option_at(const rdm_pool *p, int32_t i, const char **key, char *text);
+RDM_API rdm_result rdm_pool_setting_at(const rdm_pool *p, int32_t i, const char **key, char *text);
 /* All options as text [capacity] of lines key=value: given as settings they make the same pool
  * again. */
 RDM_API rdm_result rdm_pool_get_settings(const rdm_pool *p, char *text, size_t capacity,

@@ -53,8 +53,9 @@
  *     every machine with the same rdm_build.kernels.
  *
  * Words: create and destroy make and end; read and write are for bytes and files, get and set for
- * values that are copied; _at(i) is row i of a list, which RANGE ends; _config_ functions answer
- * what a config would give. A name that changes is kept in deprecated.h for one minor release.
+ * values that are copied; _at(i) is row i of a list, which RANGE ends (_option_at: what an option
+ * is, _setting_at: what it is set to); _config_ functions answer what a config would give. A name
+ * that changes is kept in deprecated.h for one minor release.
  *
  * Promises of 1.x, from 1.0 on. A program that was compiled against the stable headers of 1.a runs
  * with the library of every 1.b, b >= a, and compiles with its headers, but for names that were

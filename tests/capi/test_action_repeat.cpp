@@ -202,7 +202,7 @@ double rate_of_agent(rdm_pool* pool) {
   const char* key = "";
   char text[RDM_TEXT_SIZE] = "";
   for (int32_t i = 0; std::strcmp(key, "action_repeat") != 0; ++i)
-    if (rdm_agent_option_at(a, i, &key, text) != RDM_OK) {
+    if (rdm_agent_setting_at(a, i, &key, text) != RDM_OK) {
       ADD_FAILURE() << rdm_last_error();
       break;
     }

@@ -26,7 +26,7 @@ TEST(ContractAgent, NullIsAnArgumentError) {
   EXPECT_EQ(rdm_agent_update(nullptr, x, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_agent_rollout(nullptr, nullptr, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_agent_set_option(nullptr, nullptr), RDM_ERROR_ARGUMENT);
-  EXPECT_EQ(rdm_agent_option_at(nullptr, 0, nullptr, nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_agent_setting_at(nullptr, 0, nullptr, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_agent_tensor_at(nullptr, 0, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_agent_get_tensor(nullptr, "x", x, 1), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_agent_set_tensor(nullptr, "x", x, 1), RDM_ERROR_ARGUMENT);

@@ -34,7 +34,7 @@ TEST(ContractPool, NullIsAnArgumentError) {
   EXPECT_EQ(rdm_pool_get_contacts(nullptr, 0, nullptr, 0, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_pool_render(nullptr, 0, "front", 8, 8, nullptr, nullptr, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_pool_field_at(nullptr, 0, nullptr), RDM_ERROR_ARGUMENT);
-  EXPECT_EQ(rdm_pool_option_at(nullptr, 0, nullptr, nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_pool_setting_at(nullptr, 0, nullptr, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_STRNE(rdm_last_error(), "");
   EXPECT_STRNE(rdm_pool_error(nullptr), "");
   rdm_pool_destroy(nullptr);

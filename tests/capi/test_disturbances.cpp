@@ -36,13 +36,13 @@ TEST(Disturbances, OfEveryTaskComeBackAsTheyWereSet) {
     // one by one, behind those of the task
     const char* key = nullptr;
     char text[RDM_TEXT_SIZE];
-    ASSERT_EQ(rdm_pool_option_at(p, task.num_options, &key, text), RDM_OK);
+    ASSERT_EQ(rdm_pool_setting_at(p, task.num_options, &key, text), RDM_OK);
     EXPECT_STREQ(key, "noise.*");
-    ASSERT_EQ(rdm_pool_option_at(p, task.num_options + 1, &key, text), RDM_OK);
+    ASSERT_EQ(rdm_pool_setting_at(p, task.num_options + 1, &key, text), RDM_OK);
     EXPECT_STREQ(text, "0.01..0.02");
-    ASSERT_EQ(rdm_pool_option_at(p, task.num_options + 4, &key, text), RDM_OK);
+    ASSERT_EQ(rdm_pool_setting_at(p, task.num_options + 4, &key, text), RDM_OK);
     EXPECT_EQ(key, std::string("noise.") + field.name);
-    EXPECT_EQ(rdm_pool_option_at(p, task.num_options + 5, &key, text), RDM_ERROR_RANGE);
+    EXPECT_EQ(rdm_pool_setting_at(p, task.num_options + 5, &key, text), RDM_ERROR_RANGE);
     rdm_pool_config d = c;
     d.settings = all.c_str();
     rdm_pool* again = make_pool(d);

@@ -98,7 +98,7 @@ TEST(Settings, LongTextsAndExactNumbersReadBack) {
   for (int32_t i = 0; i < task.num_options; ++i) {
     const char* key = nullptr;
     char text[RDM_TEXT_SIZE] = "untouched";
-    const rdm_result r = rdm_pool_option_at(p, i, &key, text);
+    const rdm_result r = rdm_pool_setting_at(p, i, &key, text);
     if (r == RDM_OK && std::strstr(key, ".FIELD")) continue;  // no key, but the pattern of some
     if (r == RDM_OK) {
       EXPECT_EQ(value_of(whole, key), text);

@@ -40,20 +40,24 @@ for file in "$old"/0*.c; do
   diff "$example-old.said" "$example-new.said" || wrong "$example says something else with today's headers"
   if nm -D --undefined-only "$example-old" | grep ' rdm_' | grep -v '@REDMAN_1$' | grep '@'; then wrong "$example-old asks for another node"; fi
 done
-# Every old name, as a function and as a source would use it.
-{
+# Every old name, as a function and as a source would use it: those of 0.1, and with today's headers all that there were since.
+uses() {
   echo '#include <redman/redman.h>'
   echo 'typedef void (*any)(void); int main(void) { const any all[] = {'
-  grep -h '^rdm_' "$root/capi/redman_old.symbols" | sed 's/.*/  (any)&,/'
+  sed 's/.*/  (any)&,/' "$1"
   echo '}; int n = RDM_ARGUMENT + RDM_BOX + RDM_SAMPLE + RDM_FLAG; unsigned i = 0; for (; i < sizeof all / sizeof *all; ++i) n -= !all[i];'
   echo 'return n != -1 + 2 + 0 + 2; }'
-} > names.c
-for include in "$old" "$root/include"; do
-  make names names.c "-I$include" -Wno-deprecated-declarations -Wno-cast-function-type
-  ./names || wrong "names of 0.1 with $include: ended with $?"
-done
-"$cc" -std=c99 -Wall -I"$root/include" -fsyntax-only names.c > warnings 2>&1
-for name in $(grep -h '^rdm_' "$root/capi/redman_old.symbols") RDM_BOX; do
-  grep -q "$name.*is deprecated" warnings || wrong "no warning for $name"
+}
+grep '^rdm_' "$root/capi/redman_old.symbols" > of_0_1.names
+sed -n 's/^rdm_result \(rdm_[a-z_0-9]*\)(.*/\1/p' "$root/include/redman/deprecated.h" | grep -v '^rdm_import_' > since.names
+uses of_0_1.names > of_0_1.c
+uses since.names > since.c
+make of_0_1 of_0_1.c "-I$old" -Wno-cast-function-type
+./of_0_1 || wrong "names of 0.1 with its header: ended with $?"
+make since since.c "-I$root/include" -DRDM_EXPERIMENTAL -Wno-deprecated-declarations -Wno-cast-function-type
+./since || wrong "names since 0.1: ended with $?"
+"$cc" -std=c99 -Wall -I"$root/include" -DRDM_EXPERIMENTAL -fsyntax-only since.c > warnings 2>&1
+for name in $(sort -u of_0_1.names since.names) RDM_BOX; do
+  grep -q "$name\b.*is deprecated" warnings || wrong "no warning for $name"
 done
 exit $status

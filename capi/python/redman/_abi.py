@@ -3853,10 +3853,10 @@ FUNCTIONS: dict[str, Function] = {
         """Mean action [action_dim] that a new policy starts from: the task's start pose, seldom that of
         RDM_BASELINE_HOLD.
         """),
-    "rdm_pool_option_at": Function(
+    "rdm_pool_setting_at": Function(
         c_int32, {"p": c_void_p, "i": c_int32, "key": POINTER(c_char_p), "text": c_void_p},
         {}, False,
-        """Option i of the task as this pool has it: key and the value as text [RDM_TEXT_SIZE], which reads
+        """What option i of the task is in this pool: key and the value as text [RDM_TEXT_SIZE], which reads
         back exactly. RANGE for a text that is longer: rdm_pool_get_settings has it. Behind the task's
         num_options come keys with a FIELD that were set, in order; RANGE ends them.
         """),
@@ -4162,10 +4162,10 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"a": c_void_p, "option": POINTER(rdm_option)},
         {}, False,
         """Changes a live option. NOT_FOUND, RANGE, or STATE when it is not live."""),
-    "rdm_agent_option_at": Function(
+    "rdm_agent_setting_at": Function(
         c_int32, {"a": c_void_p, "i": c_int32, "key": POINTER(c_char_p), "text": c_void_p},
         {}, False,
-        """Option i of the algorithm as this agent has it: key (static) and the value as
+        """What option i of the algorithm is in this agent: key (static) and the value as
         text [RDM_TEXT_SIZE], which reads back exactly. RANGE for a text that is longer:
         rdm_agent_get_settings has it.
         """),

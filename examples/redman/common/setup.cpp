@@ -203,7 +203,7 @@ std::string agent_option(const redman::Agent& agent, const std::string& algo, co
   for (int32_t i = 0; i < count; ++i) {
     const char* key = nullptr;
     char text[RDM_TEXT_SIZE];
-    redman::check(rdm_agent_option_at(agent.get(), i, &key, text));
+    redman::check(rdm_agent_setting_at(agent.get(), i, &key, text));
     if (same_name(key, wanted)) return text;
   }
   throw Failure("algorithm " + algo + " has no option " + wanted);

@@ -198,7 +198,7 @@ std::string Recorder::metadata(const RecordNote& note, uint64_t steps) const {
   for (const rdm_option_spec& o : task_options(spec.task)) {
     const char* key = nullptr;
     char text[RDM_TEXT_SIZE];
-    if (rdm_pool_option_at(pool_.get(), index++, &key, text) == RDM_OK) options[o.key] = text;
+    if (rdm_pool_setting_at(pool_.get(), index++, &key, text) == RDM_OK) options[o.key] = text;
     for (const auto& [name, value] : note.options)  // a longer text than that call gives
       if (same_name(name, o.key) && value.size() >= sizeof text) options[o.key] = value;
   }

@@ -84,7 +84,7 @@ void ask_task(const World& w, Lines& lines) {
   if (step != RDM_OK) require_refusal(step);
   const char* key;
   char text[RDM_TEXT_SIZE];
-  for (int32_t i = 0; rdm_pool_option_at(p, i, &key, text) == RDM_OK; ++i)
+  for (int32_t i = 0; rdm_pool_setting_at(p, i, &key, text) == RDM_OK; ++i)
     HARD_REQUIRE(good_text(text), "option %s", key);
   const std::string settings = settings_of<rdm_pool>(rdm_pool_get_settings, p);
   c.options = nullptr;
@@ -112,7 +112,7 @@ void ask_algo(const std::string& algo, Lines& lines) {
   if (set != RDM_OK) require_refusal(set);
   const char* key;
   char text[RDM_TEXT_SIZE];
-  for (int32_t i = 0; rdm_agent_option_at(a, i, &key, text) == RDM_OK; ++i)
+  for (int32_t i = 0; rdm_agent_setting_at(a, i, &key, text) == RDM_OK; ++i)
     HARD_REQUIRE(good_text(text), "option %s", key);
   const std::string settings = settings_of<rdm_agent>(rdm_agent_get_settings, a);
   c.options = nullptr;
