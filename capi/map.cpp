@@ -160,7 +160,8 @@ rdm_result rdm_map_scan(rdm_map* m, rdm_pool* p, int32_t env, const char* camera
   });
 }
 
-rdm_result rdm_map_query(const rdm_map* m, const float* points, size_t count, float* probability) {
+rdm_result rdm_map_get_probabilities(const rdm_map* m, const float* points, size_t count,
+                                     float* probability) {
   return call_on(m, [&] {
     need_points(points, count, "points");
     if (count > 0) need(probability, "probability");
@@ -168,8 +169,8 @@ rdm_result rdm_map_query(const rdm_map* m, const float* points, size_t count, fl
   });
 }
 
-rdm_result rdm_map_box(const rdm_map* m, const float low[3], const float high[3], rdm_voxel* out,
-                       size_t capacity, size_t* count) {
+rdm_result rdm_map_get_voxels(const rdm_map* m, const float low[3], const float high[3], rdm_voxel* out,
+                              size_t capacity, size_t* count) {
   return call_on(m, [&] {
     need(low, "low");
     need(high, "high");
@@ -214,8 +215,8 @@ rdm_result rdm_map_raycast(const rdm_map* m, const float origin[3], const float 
   });
 }
 
-rdm_result rdm_map_distance(const rdm_map* m, const float* points, size_t count, float most,
-                            float* distance) {
+rdm_result rdm_map_get_distances(const rdm_map* m, const float* points, size_t count, float most,
+                                 float* distance) {
   return call_on(m, [&] {
     need_points(points, count, "points");
     if (count > 0) need(distance, "distance");
@@ -226,7 +227,8 @@ rdm_result rdm_map_distance(const rdm_map* m, const float* points, size_t count,
   });
 }
 
-rdm_result rdm_map_grid(const rdm_map* m, const rdm_pose* pose, const int32_t n[3], float side, int8_t* out) {
+rdm_result rdm_map_get_grid(const rdm_map* m, const rdm_pose* pose, const int32_t n[3], float side,
+                            int8_t* out) {
   return call_on(m, [&] {
     const Pose at = need_pose(pose, "pose");
     need(n, "n");

@@ -346,8 +346,8 @@ rdm_result rdm_robot_get_postures(int32_t robot, int32_t* commands, double* home
   });
 }
 
-rdm_result rdm_robot_kinematics(int32_t robot, const double* q, rdm_pose* links, rdm_pose* flange,
-                                double* tips, rdm_pose* palm) {
+rdm_result rdm_robot_get_poses(int32_t robot, const double* q, rdm_pose* links, rdm_pose* flange,
+                               double* tips, rdm_pose* palm) {
   return call([&] {
     need(links, "links");
     const RobotRef ref(robot);

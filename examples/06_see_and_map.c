@@ -74,7 +74,7 @@ int main(int argc, char** argv) {
     const float middle[3] = {(float)p[0], (float)p[1], (float)p[2]};
     float distance;
     if (rdm_map_meets(map, &plans[i], half, &meets)) goto done;
-    if (rdm_map_distance(map, middle, 1, 2.0f, &distance)) goto done;
+    if (rdm_map_get_distances(map, middle, 1, 2.0f, &distance)) goto done;
     printf("broom at x %.1f m: %s, the nearest thing %.2f m from its middle\n", p[0],
            meets ? "meets something" : "is free", (double)distance);
   }

@@ -452,6 +452,29 @@ rdm_result rdm_pool_hull(const rdm_pool *p, int32_t i, float *points, int32_t ca
   return r;
 }
 
+static inline RDM_DEPRECATED("rdm_map_get_probabilities")
+rdm_result rdm_map_query(const rdm_map *m, const float *points, size_t count, float *probability) {
+  return rdm_map_get_probabilities(m, points, count, probability);
+}
+
+static inline RDM_DEPRECATED("rdm_map_get_voxels")
+rdm_result rdm_map_box(const rdm_map *m, const float low[3], const float high[3], rdm_voxel *out,
+                       size_t capacity, size_t *count) {
+  return rdm_map_get_voxels(m, low, high, out, capacity, count);
+}
+
+static inline RDM_DEPRECATED("rdm_map_get_distances")
+rdm_result rdm_map_distance(const rdm_map *m, const float *points, size_t count, float most,
+                            float *distance) {
+  return rdm_map_get_distances(m, points, count, most, distance);
+}
+
+static inline RDM_DEPRECATED("rdm_map_get_grid")
+rdm_result rdm_map_grid(const rdm_map *m, const rdm_pose *pose, const int32_t n[3], float side,
+                        int8_t *out) {
+  return rdm_map_get_grid(m, pose, n, side, out);
+}
+
 static inline RDM_DEPRECATED("rdm_map_write")
 rdm_result rdm_map_save(const rdm_map *m, int32_t format, void *bytes, size_t capacity,
                         size_t *size) {
@@ -525,6 +548,12 @@ static inline RDM_DEPRECATED("rdm_robot_get_postures")
 rdm_result rdm_robot_poses_of(int32_t robot, int32_t *commands, double *home, double *folded,
                               float *closed) {
   return rdm_robot_get_postures(robot, commands, home, folded, closed);
+}
+
+static inline RDM_DEPRECATED("rdm_robot_get_poses")
+rdm_result rdm_robot_kinematics(int32_t robot, const double *q, rdm_pose *links, rdm_pose *flange,
+                                double *tips, rdm_pose *palm) {
+  return rdm_robot_get_poses(robot, q, links, flange, tips, palm);
 }
 
 static inline RDM_DEPRECATED("rdm_object_destroy")

@@ -16,7 +16,7 @@ extern "C" {
  *   if (rdm_map_create(&m, &c)) puts(rdm_last_error());
  *   rdm_map_scan(m, pool, 0, "top", 96, 96, NULL, 0, &dropped);   a look of world 0's camera, or
  *   rdm_map_insert(m, origin, points, count, &dropped);           points of your own sensor
- *   rdm_map_query(m, points, count, probability);
+ *   rdm_map_get_probabilities(m, points, count, probability);
  *   rdm_map_destroy(m);
  *
  * One thread writes a map at a time; while none does, any number may read. All points are float [3]
@@ -80,12 +80,12 @@ RDM_API rdm_result rdm_map_scan(rdm_map *m, rdm_pool *p, int32_t env, const char
                                 uint64_t *dropped);
 
 /* probability [count] that the voxel of each of points [count][3] is occupied; -1: unknown. */
-RDM_API rdm_result rdm_map_query(const rdm_map *m, const float *points, size_t count,
-                                 float *probability);
+RDM_API rdm_result rdm_map_get_probabilities(const rdm_map *m, const float *points, size_t count,
+                                             float *probability);
 /* Occupied voxels that meet the box from low [3] to high [3]: writes up to capacity to
  * out [capacity], *count is how many there are. */
-RDM_API rdm_result rdm_map_box(const rdm_map *m, const float low[3], const float high[3],
-                               rdm_voxel *out, size_t capacity, size_t *count);
+RDM_API rdm_result rdm_map_get_voxels(const rdm_map *m, const float low[3], const float high[3],
+                                      rdm_voxel *out, size_t capacity, size_t *count);
 /* *meets is 1 when an occupied voxel meets the box of half sizes half [3] that stands at `pose`. */
 RDM_API rdm_result rdm_map_meets(const rdm_map *m, const rdm_pose *pose, const float half[3],
                                  int32_t *meets);
@@ -97,12 +97,12 @@ RDM_API rdm_result rdm_map_raycast(const rdm_map *m, const float origin[3],
                                    float hit[3], int32_t *found);
 /* distance [count] from each of points [count][3] to the nearest point of an occupied voxel, m;
  * `most` if none is so near. */
-RDM_API rdm_result rdm_map_distance(const rdm_map *m, const float *points, size_t count, float most,
-                                    float *distance);
+RDM_API rdm_result rdm_map_get_distances(const rdm_map *m, const float *points, size_t count,
+                                         float most, float *distance);
 /* A grid of counts n [3] of cells of `side` m (each count 1 to 1024) about `pose`: what the map
  * says at their centres, out [n0][n1][n2], x outermost: 1 occupied, 0 free, -1 unknown. */
-RDM_API rdm_result rdm_map_grid(const rdm_map *m, const rdm_pose *pose, const int32_t n[3],
-                                float side, int8_t *out);
+RDM_API rdm_result rdm_map_get_grid(const rdm_map *m, const rdm_pose *pose, const int32_t n[3],
+                                    float side, int8_t *out);
 
 /* OctoMap's files: RDM_MAP_BINARY (.bt: occupied or free) and RDM_MAP_FULL (.ot: the probabilities
  * too). */

@@ -44,19 +44,19 @@ class Map {
   // One point [3] each; the C calls take many.
   float query(const float point[3]) const {
     float probability = 0;
-    check(rdm_map_query(get(), point, 1, &probability));
+    check(rdm_map_get_probabilities(get(), point, 1, &probability));
     return probability;
   }
   float distance(const float point[3], float most) const {
     float d = 0;
-    check(rdm_map_distance(get(), point, 1, most, &d));
+    check(rdm_map_get_distances(get(), point, 1, most, &d));
     return d;
   }
   std::vector<rdm_voxel> box(const float low[3], const float high[3]) const {
     size_t count = 0;
-    check(rdm_map_box(get(), low, high, nullptr, 0, &count));
+    check(rdm_map_get_voxels(get(), low, high, nullptr, 0, &count));
     std::vector<rdm_voxel> out(count);
-    check(rdm_map_box(get(), low, high, out.data(), out.size(), &count));
+    check(rdm_map_get_voxels(get(), low, high, out.data(), out.size(), &count));
     return out;
   }
   bool meets(const rdm_pose& pose, const float half[3]) const {

@@ -167,8 +167,8 @@ RDM_API rdm_result rdm_robot_get_postures(int32_t robot, int32_t *commands, doub
 /* For joints q [num_links], in the root frame: poses of the links to links [num_links]. *flange,
  * tips [num_fingers][3] and *palm (origin at hold_p, y into the palm, z as the fingers point) may
  * be NULL. */
-RDM_API rdm_result rdm_robot_kinematics(int32_t robot, const double *q, rdm_pose *links,
-                                        rdm_pose *flange, double *tips, rdm_pose *palm);
+RDM_API rdm_result rdm_robot_get_poses(int32_t robot, const double *q, rdm_pose *links,
+                                       rdm_pose *flange, double *tips, rdm_pose *palm);
 /* Joints q [num_links], from where they are, to where the arm's flange has the pose `flange` in the
  * root frame. *found is 0 when the least squares end elsewhere. UNSUPPORTED: no flange. */
 RDM_API rdm_result rdm_robot_reach(int32_t robot, const rdm_pose *flange, double *q,

@@ -59,7 +59,7 @@ TEST(Map, ScansOfATasksCamerasShowItsShapes) {
     }
   ASSERT_GT(points.size(), 300u);
   distance.resize(points.size() / 3);
-  ASSERT_EQ(rdm_map_distance(map.m, points.data(), distance.size(), 1, distance.data()), RDM_OK);
+  ASSERT_EQ(rdm_map_get_distances(map.m, points.data(), distance.size(), 1, distance.data()), RDM_OK);
   size_t near = 0;
   for (const float d : distance) near += d < 0.03f;
   EXPECT_GT(near, distance.size() * 97 / 100);
@@ -94,13 +94,13 @@ TEST(Map, GridBoxAndTurnedBoxAgree) {
   const float origin[3] = {0.05f, 0.05f, 0.05f}, points[] = {0.55f, 0.05f, 0.05f, 0.05f, 0.95f, 0.05f};
   ASSERT_EQ(rdm_map_insert(map.m, origin, points, 2, nullptr), RDM_OK);
   float probability[2];
-  ASSERT_EQ(rdm_map_query(map.m, points, 2, probability), RDM_OK);
+  ASSERT_EQ(rdm_map_get_probabilities(map.m, points, 2, probability), RDM_OK);
   EXPECT_GT(probability[0], 0.5f);
   EXPECT_GT(probability[1], 0.5f);
   const float low[3] = {0.5f, 0, 0}, high[3] = {0.6f, 0.1f, 0.1f};
   rdm_voxel voxel[4];
   size_t count = 0;
-  ASSERT_EQ(rdm_map_box(map.m, low, high, voxel, 4, &count), RDM_OK);
+  ASSERT_EQ(rdm_map_get_voxels(map.m, low, high, voxel, 4, &count), RDM_OK);
   ASSERT_EQ(count, 1u);
   EXPECT_NEAR(voxel[0].centre[0], 0.55f, 1e-6f);
   EXPECT_NEAR(voxel[0].side, 0.1f, 1e-6f);
@@ -115,7 +115,7 @@ TEST(Map, GridBoxAndTurnedBoxAgree) {
   EXPECT_EQ(meets, 0);
   const int32_t n[3] = {9, 1, 1};
   int8_t grid[9];
-  ASSERT_EQ(rdm_map_grid(map.m, &pose, n, 0.1f, grid), RDM_OK);
+  ASSERT_EQ(rdm_map_get_grid(map.m, &pose, n, 0.1f, grid), RDM_OK);
   for (int i = 0; i < 8; ++i) EXPECT_EQ(grid[i], 0) << i;
   EXPECT_EQ(grid[8], 1);
 }
@@ -132,13 +132,13 @@ TEST(Map, WhatIsNearerThanAVoxelIsNoObstacle) {
   ASSERT_EQ(rdm_map_raycast(map.m, origin, ahead, 5, 1, hit, &found), RDM_OK);
   EXPECT_EQ(found, 1);
   EXPECT_NEAR(hit[0], 1, 0.02);
-  ASSERT_EQ(rdm_map_query(map.m, origin, 1, &p), RDM_OK);
+  ASSERT_EQ(rdm_map_get_probabilities(map.m, origin, 1, &p), RDM_OK);
   EXPECT_LT(p, 0.5f) << "the ray to the wall clears it";
   ASSERT_EQ(rdm_map_meets(map.m, &pose, half, &found), RDM_OK);
   EXPECT_EQ(found, 0);
   const float near[3] = {0, 0.03f, 0.5f};  // further than a voxel: it is one
   ASSERT_EQ(rdm_map_insert(map.m, origin, near, 1, nullptr), RDM_OK);
-  ASSERT_EQ(rdm_map_query(map.m, near, 1, &p), RDM_OK);
+  ASSERT_EQ(rdm_map_get_probabilities(map.m, near, 1, &p), RDM_OK);
   EXPECT_GT(p, 0.5f);
 }
 
@@ -152,7 +152,7 @@ TEST(Map, FilesAndBytesComeBack) {
     ASSERT_EQ(rdm_map_write_file(map.m, path.c_str()), RDM_OK) << rdm_last_error();
     ASSERT_EQ(rdm_map_read_file(other.m, path.c_str()), RDM_OK) << rdm_map_error(other.m);
     float p[2];
-    ASSERT_EQ(rdm_map_query(other.m, points, 2, p), RDM_OK);
+    ASSERT_EQ(rdm_map_get_probabilities(other.m, points, 2, p), RDM_OK);
     EXPECT_GT(p[0], 0.5f);
     EXPECT_GT(p[1], 0.5f);
     std::remove(path.c_str());
@@ -237,21 +237,21 @@ TEST(Map, BadArgumentsGetAnswersAndNothingIsPrinted) {
   EXPECT_EQ(rdm_map_insert(map.m, p, nullptr, 0, nullptr), RDM_OK);
   EXPECT_EQ(rdm_map_insert(map.m, p, p, SIZE_MAX, nullptr), RDM_ERROR_RANGE);
   EXPECT_EQ(rdm_map_scan(map.m, nullptr, 0, "top", 8, 8, nullptr, 0, nullptr), RDM_ERROR_ARGUMENT);
-  EXPECT_EQ(rdm_map_query(map.m, nullptr, 1, out), RDM_ERROR_ARGUMENT);
-  EXPECT_EQ(rdm_map_query(map.m, nan, 1, out), RDM_OK);
+  EXPECT_EQ(rdm_map_get_probabilities(map.m, nullptr, 1, out), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_map_get_probabilities(map.m, nan, 1, out), RDM_OK);
   EXPECT_EQ(out[0], -1);
-  EXPECT_EQ(rdm_map_box(map.m, p, nan, nullptr, 0, &count), RDM_ERROR_ARGUMENT);
-  EXPECT_EQ(rdm_map_box(map.m, p, p, nullptr, 1, &count), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_map_get_voxels(map.m, p, nan, nullptr, 0, &count), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_map_get_voxels(map.m, p, p, nullptr, 1, &count), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_map_meets(map.m, &no_pose, p, &flag), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_map_meets(map.m, &nowhere, p, &flag), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_map_meets(map.m, &pose, nan, &flag), RDM_ERROR_RANGE);
   EXPECT_EQ(rdm_map_raycast(map.m, p, p, 1, 1, out, &flag), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_map_raycast(map.m, p, ahead, NAN, 1, out, &flag), RDM_ERROR_RANGE);
-  EXPECT_EQ(rdm_map_distance(map.m, nan, 1, 1, out), RDM_ERROR_ARGUMENT);
-  EXPECT_EQ(rdm_map_distance(map.m, p, 1, 0, out), RDM_ERROR_RANGE);
-  EXPECT_EQ(rdm_map_grid(map.m, &pose, none, 0.1f, &cell), RDM_ERROR_RANGE);
-  EXPECT_EQ(rdm_map_grid(map.m, &pose, n, 0, &cell), RDM_ERROR_RANGE);
-  EXPECT_EQ(rdm_map_grid(map.m, &pose, n, 0.1f, &cell), RDM_OK);
+  EXPECT_EQ(rdm_map_get_distances(map.m, nan, 1, 1, out), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_map_get_distances(map.m, p, 1, 0, out), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_map_get_grid(map.m, &pose, none, 0.1f, &cell), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_map_get_grid(map.m, &pose, n, 0, &cell), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_map_get_grid(map.m, &pose, n, 0.1f, &cell), RDM_OK);
   EXPECT_EQ(rdm_map_write(map.m, 2, nullptr, 0, &count), RDM_ERROR_RANGE);
   EXPECT_EQ(rdm_map_read(map.m, nullptr, 0), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_map_read(map.m, "x", 1), RDM_ERROR_FORMAT);

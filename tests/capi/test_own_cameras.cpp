@@ -140,7 +140,7 @@ TEST_F(OwnCameras, CloudsVoxelsAndMapsStandWhereThePictureShowsThem) {
   redman::Map map(redman::map_config(0.01));
   EXPECT_EQ(map.scan(worlds, 0, "odd", 4 * kSide, 4 * kSide), 0u);
   std::vector<float> distance(static_cast<size_t>(s.num_points));
-  redman::check(rdm_map_distance(map.get(), s.points, distance.size(), 1, distance.data()));
+  redman::check(rdm_map_get_distances(map.get(), s.points, distance.size(), 1, distance.data()));
   for (const float d : distance) EXPECT_LT(d, 0.011f) << "the map has a voxel at each point of the cloud";
 
   const rdm_pose ball = worlds.poses()[1];  // about which the voxels are
@@ -155,7 +155,7 @@ TEST_F(OwnCameras, CloudsVoxelsAndMapsStandWhereThePictureShowsThem) {
                             static_cast<float>(ball.p[1]) + middle(y),
                             static_cast<float>(ball.p[2]) + middle(z)};
         float near = 0;
-        redman::check(rdm_map_distance(map.get(), p, 1, 1, &near));
+        redman::check(rdm_map_get_distances(map.get(), p, 1, 1, &near));
         EXPECT_LT(near, s.voxel_size) << x << ' ' << y << ' ' << z;
       }
   EXPECT_GT(occupied, 3);

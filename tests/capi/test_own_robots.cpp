@@ -75,7 +75,7 @@ struct Robots {  // removes what it made
 // 7 doubles of each link.
 std::vector<double> poses_of(int32_t robot, const std::vector<double>& q) {
   std::vector<rdm_pose> links(q.size());
-  EXPECT_EQ(rdm_robot_kinematics(robot, q.data(), links.data(), nullptr, nullptr, nullptr), RDM_OK);
+  EXPECT_EQ(rdm_robot_get_poses(robot, q.data(), links.data(), nullptr, nullptr, nullptr), RDM_OK);
   std::vector<double> out;
   for (const rdm_pose& X : links) {
     out.insert(out.end(), X.p, X.p + 3);
@@ -181,8 +181,8 @@ TEST(Robots, AHandOnAnArmIsARobot) {
   // the tip of a finger: the arm's flange, the plate, the turn, and the hand's own place
   std::vector<double> q(own.links.size(), 0.0), tips(3 * own.fingers.size()), hand_tips(tips.size());
   std::vector<rdm_pose> links(own.links.size());
-  ASSERT_EQ(rdm_robot_kinematics(both, q.data(), links.data(), nullptr, tips.data(), nullptr), RDM_OK);
-  ASSERT_EQ(rdm_robot_kinematics(0, q.data(), links.data(), nullptr, hand_tips.data(), nullptr), RDM_OK);
+  ASSERT_EQ(rdm_robot_get_poses(both, q.data(), links.data(), nullptr, tips.data(), nullptr), RDM_OK);
+  ASSERT_EQ(rdm_robot_get_poses(0, q.data(), links.data(), nullptr, hand_tips.data(), nullptr), RDM_OK);
   for (size_t i = 0; i < own.fingers.size(); ++i) {
     const double x = hand_tips[3 * i] - hand.def.mount.p[0], y = hand_tips[3 * i + 1] - hand.def.mount.p[1],
                  z = hand_tips[3 * i + 2] - hand.def.mount.p[2];
@@ -219,7 +219,7 @@ TEST(Robots, AFlangeIsReachedOrNot) {
   const int32_t arm = robots.create(pendulum(&link));
   rdm_pose goal, rod;
   double q = 0.8;
-  ASSERT_EQ(rdm_robot_kinematics(arm, &q, &rod, &goal, nullptr, nullptr), RDM_OK);
+  ASSERT_EQ(rdm_robot_get_poses(arm, &q, &rod, &goal, nullptr, nullptr), RDM_OK);
   int32_t found = -1;
   q = 0.1;
   ASSERT_EQ(rdm_robot_reach(arm, &goal, &q, &found), RDM_OK);

@@ -199,7 +199,7 @@ TEST(Registries, ANumberThatWasKeptTooLongIsRefusedEverywhere) {
   refused(gone[0], rdm_robot_curve_at(robot, 0, &curve));
   refused(gone[0], rdm_robot_finger_at(robot, 0, &finger));
   refused(gone[0], rdm_robot_get_postures(robot, nullptr, q, nullptr, nullptr));
-  refused(gone[0], rdm_robot_kinematics(robot, q, poses, nullptr, nullptr, nullptr));
+  refused(gone[0], rdm_robot_get_poses(robot, q, poses, nullptr, nullptr, nullptr));
   refused(gone[0], rdm_robot_reach(robot, poses, q, &found));
   refused(gone[0], rdm_robot_create_mounted(&made, "mounted", robot, 0, 0, 0, 0));
   refused(gone[0], rdm_robot_create_mounted(&made, "mounted", next[0], robot, 0, 0, 0));

@@ -408,12 +408,12 @@ std::vector<Case> all_cases() {
                    int32_t yes = 0;
                    const int32_t cells[3] = {4, 4, 4};
                    int8_t grid[64];
-                   rdm_result r = rdm_map_query(g.map, point, 1, &number);
-                   if (r == RDM_OK) r = rdm_map_box(g.map, low, high, voxel, 4, &n);
+                   rdm_result r = rdm_map_get_probabilities(g.map, point, 1, &number);
+                   if (r == RDM_OK) r = rdm_map_get_voxels(g.map, low, high, voxel, 4, &n);
                    if (r == RDM_OK) r = rdm_map_meets(g.map, &pose, half, &yes);
                    if (r == RDM_OK) r = rdm_map_raycast(g.map, high, down, 3, 1, hit, &yes);
-                   if (r == RDM_OK) r = rdm_map_distance(g.map, point, 1, 1, &number);
-                   if (r == RDM_OK) r = rdm_map_grid(g.map, &pose, cells, 0.1f, grid);
+                   if (r == RDM_OK) r = rdm_map_get_distances(g.map, point, 1, 1, &number);
+                   if (r == RDM_OK) r = rdm_map_get_grid(g.map, &pose, cells, 0.1f, grid);
                    return r;
                  },
                  clear});

@@ -49,7 +49,7 @@ struct Robot {  // in the process's list for a while
   }
   std::vector<rdm_pose> poses(const std::vector<double>& q) const {
     std::vector<rdm_pose> out(q.size());
-    EXPECT_EQ(rdm_robot_kinematics(index, q.data(), out.data(), nullptr, nullptr, nullptr), RDM_OK)
+    EXPECT_EQ(rdm_robot_get_poses(index, q.data(), out.data(), nullptr, nullptr, nullptr), RDM_OK)
         << rdm_last_error();
     return out;
   }

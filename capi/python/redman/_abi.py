@@ -4335,11 +4335,11 @@ FUNCTIONS: dict[str, Function] = {
         """One scan by a camera of the pool's task: depths of w x h rays of world env. Rays that end on one
         of the num_skip shapes in skip [num_skip], or meet nothing, are left out. *dropped as above.
         """),
-    "rdm_map_query": Function(
+    "rdm_map_get_probabilities": Function(
         c_int32, {"m": c_void_p, "points": c_void_p, "count": c_size_t, "probability": c_void_p},
         {"points": Rows("float32", ("count", "3")), "probability": Rows("float32", ("count",))}, True,
         """probability [count] that the voxel of each of points [count][3] is occupied; -1: unknown."""),
-    "rdm_map_box": Function(
+    "rdm_map_get_voxels": Function(
         c_int32, {"m": c_void_p, "low": c_void_p, "high": c_void_p, "out": POINTER(rdm_voxel), "capacity": c_size_t, "count": c_void_p},
         {"low": Rows("float32", ("3",)), "high": Rows("float32", ("3",))}, True,
         """Occupied voxels that meet the box from low [3] to high [3]: writes up to capacity to
@@ -4356,13 +4356,13 @@ FUNCTIONS: dict[str, Function] = {
         m: *found is 1 and hit [3] is written. An unknown voxel ends the ray unless through_unknown is
         1.
         """),
-    "rdm_map_distance": Function(
+    "rdm_map_get_distances": Function(
         c_int32, {"m": c_void_p, "points": c_void_p, "count": c_size_t, "most": c_float, "distance": c_void_p},
         {"points": Rows("float32", ("count", "3")), "distance": Rows("float32", ("count",))}, True,
         """distance [count] from each of points [count][3] to the nearest point of an occupied voxel, m;
         `most` if none is so near.
         """),
-    "rdm_map_grid": Function(
+    "rdm_map_get_grid": Function(
         c_int32, {"m": c_void_p, "pose": c_void_p, "n": c_void_p, "side": c_float, "out": c_void_p},
         {"pose": Rows("float64", ("7",)), "n": Rows("int32", ("3",)), "out": Rows("int8", ("n0", "n1", "n2"))}, True,
         """A grid of counts n [3] of cells of `side` m (each count 1 to 1024) about `pose`: what the map
@@ -4833,7 +4833,7 @@ FUNCTIONS: dict[str, Function] = {
         folded [num_links] and closed [num_commands] may be NULL. The counts are those of
         rdm_robot_get_def; folded and closed are 0 where it has none.
         """),
-    "rdm_robot_kinematics": Function(
+    "rdm_robot_get_poses": Function(
         c_int32, {"robot": c_int32, "q": c_void_p, "links": c_void_p, "flange": c_void_p, "tips": c_void_p, "palm": c_void_p},
         {"q": Rows("float64", ("num_links",)), "links": Rows("float64", ("num_links", "7")), "flange": Rows("float64", ("7",)), "tips": Rows("float64", ("num_fingers", "3")), "palm": Rows("float64", ("7",))}, True,
         """For joints q [num_links], in the root frame: poses of the links to links [num_links]. *flange,

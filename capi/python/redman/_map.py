@@ -99,17 +99,17 @@ class Map:
         """[count] probability that the voxel of each point is occupied; -1: unknown."""
         rows = _points(points)
         out = np.empty(len(rows), np.float32)
-        self._check(lib.rdm_map_query(self._open(), rows.ctypes.data, len(rows), out.ctypes.data))
+        self._check(lib.rdm_map_get_probabilities(self._open(), rows.ctypes.data, len(rows), out.ctypes.data))
         return out
 
     def box(self, low: Sequence[float], high: Sequence[float]) -> Array:
         """Occupied voxels that meet the box: rows of centre [3] and side, m."""
-        corners = [self._given("rdm_map_box", name, value) for name, value in (("low", low), ("high", high))]
+        corners = [self._given("rdm_map_get_voxels", name, value) for name, value in (("low", low), ("high", high))]
         out = np.empty(0, np.dtype(_abi.rdm_voxel))
         count = c_size_t()
         while True:
             rows = out.ctypes.data_as(ctypes.POINTER(_abi.rdm_voxel))
-            self._check(lib.rdm_map_box(self._open(), *(c.ctypes.data for c in corners), rows, len(out), byref(count)))
+            self._check(lib.rdm_map_get_voxels(self._open(), *(c.ctypes.data for c in corners), rows, len(out), byref(count)))
             if count.value <= len(out):
                 return out[:count.value]
             out = np.empty(count.value, out.dtype)
@@ -136,15 +136,15 @@ class Map:
         """[count] distance from each point to the nearest occupied voxel, m; most where none is so near."""
         rows = _points(points)
         out = np.empty(len(rows), np.float32)
-        self._check(lib.rdm_map_distance(self._open(), rows.ctypes.data, len(rows), most, out.ctypes.data))
+        self._check(lib.rdm_map_get_distances(self._open(), rows.ctypes.data, len(rows), most, out.ctypes.data))
         return out
 
     def grid(self, pose: Sequence[float], n: Sequence[int], side: float) -> npt.NDArray[np.int8]:
         """[n0][n1][n2] cells of side m about pose: 1 occupied, 0 free, -1 unknown."""
-        counts = self._given("rdm_map_grid", "n", n)
+        counts = self._given("rdm_map_get_grid", "n", n)
         fits = all(1 <= count <= 1024 for count in counts)  # if not, the call says so
         out = np.empty(tuple(counts) if fits else 0, np.int8)
-        self._check(lib.rdm_map_grid(self._open(), self._given("rdm_map_grid", "pose", pose).ctypes.data,
+        self._check(lib.rdm_map_get_grid(self._open(), self._given("rdm_map_get_grid", "pose", pose).ctypes.data,
                                      counts.ctypes.data, side, out.ctypes.data))
         return out
 

@@ -246,7 +246,7 @@ Place DemoHand::place(const float* action, int32_t finger) const {
   std::vector<rdm_pose> links(rows_.size());
   angles(action, q.data());
   rdm_pose palm;
-  redman::check(rdm_robot_kinematics(robot_, q.data(), links.data(), nullptr, tips.data(), &palm));
+  redman::check(rdm_robot_get_poses(robot_, q.data(), links.data(), nullptr, tips.data(), &palm));
   Place out = place_from(palm);
   if (finger >= 0) std::copy_n(&tips[3 * static_cast<size_t>(finger)], 3, out.p);
   return base_ * out;
@@ -257,7 +257,7 @@ bool DemoHand::reach(const Place& to, int32_t finger, float* action) const {
   std::vector<rdm_pose> links(rows_.size());
   angles(action, q.data());
   rdm_pose flange, palm;
-  redman::check(rdm_robot_kinematics(robot_, q.data(), links.data(), &flange, tips.data(), &palm));
+  redman::check(rdm_robot_get_poses(robot_, q.data(), links.data(), &flange, tips.data(), &palm));
   Place point = place_from(palm);
   if (finger >= 0) std::copy_n(&tips[3 * static_cast<size_t>(finger)], 3, point.p);
   const Place goal = inverse(base_) * to * inverse(point) * place_from(flange);

@@ -104,7 +104,7 @@ Shown show_robot(int32_t index, int32_t joints) {
     out.q[i] = j.lower + kOpen * (j.upper - j.lower);
   }
   std::vector<rdm_pose> links(static_cast<size_t>(joints));
-  redman::check(rdm_robot_kinematics(index, out.q, links.data(), nullptr, nullptr, nullptr));
+  redman::check(rdm_robot_get_poses(index, out.q, links.data(), nullptr, nullptr, nullptr));
   Bounds b;
   rdm_robot_shape s;
   for (int32_t i = 0; rdm_robot_shape_at(index, i, &s) == RDM_OK; ++i) {

@@ -76,14 +76,14 @@ void one(const unsigned char* data, size_t size) {
   int32_t yes = 0;
   const int32_t cells[3] = {4, 4, 4};
   int8_t grid[64];
-  HARD_REQUIRE(rdm_map_query(m, point, 1, &p) == RDM_OK && (p == -1 || (p >= 0 && p <= 1)), "probability %g",
-               static_cast<double>(p));
-  HARD_REQUIRE(rdm_map_box(m, low, high, voxel, 4, &n) == RDM_OK, "%s", rdm_last_error());
+  HARD_REQUIRE(rdm_map_get_probabilities(m, point, 1, &p) == RDM_OK && (p == -1 || (p >= 0 && p <= 1)),
+               "probability %g", static_cast<double>(p));
+  HARD_REQUIRE(rdm_map_get_voxels(m, low, high, voxel, 4, &n) == RDM_OK, "%s", rdm_last_error());
   HARD_REQUIRE(rdm_map_meets(m, &pose, half, &yes) == RDM_OK, "%s", rdm_last_error());
   HARD_REQUIRE(rdm_map_raycast(m, high, down, 3, 1, hit, &yes) == RDM_OK, "%s", rdm_last_error());
-  HARD_REQUIRE(rdm_map_distance(m, point, 1, 1, &distance) == RDM_OK && std::isfinite(distance), "%s",
+  HARD_REQUIRE(rdm_map_get_distances(m, point, 1, 1, &distance) == RDM_OK && std::isfinite(distance), "%s",
                rdm_last_error());
-  HARD_REQUIRE(rdm_map_grid(m, &pose, cells, 0.1f, grid) == RDM_OK, "%s", rdm_last_error());
+  HARD_REQUIRE(rdm_map_get_grid(m, &pose, cells, 0.1f, grid) == RDM_OK, "%s", rdm_last_error());
   const Bytes again = saved(m, RDM_MAP_FULL);
   HARD_REQUIRE(rdm_map_read(m, again.data(), again.size()) == RDM_OK, "a saved map does not load: %s",
                rdm_last_error());
