@@ -30,7 +30,7 @@ void keep_error(const std::string& text) {
 }
 
 template <class F>
-rdm_result call(const rdm_import_options* options, F&& f) noexcept {
+rdm_result call(const rdm_import_config* c, F&& f) noexcept {
   rdm_result code = RDM_OK;
   try {
     try {
@@ -47,12 +47,11 @@ rdm_result call(const rdm_import_options* options, F&& f) noexcept {
     code = RDM_ERROR_INTERNAL;
     std::strcpy(t_error, "internal error: unexpected exception");
   }
-  constexpr size_t end = offsetof(rdm_import_options, error_size) + sizeof options->error_size;
-  if (options && options->struct_size >= end && options->struct_size <= kMaxStruct && options->error &&
-      options->error_size > 0) {
-    const size_t size = std::min(std::strlen(t_error), static_cast<size_t>(options->error_size) - 1);
-    std::memcpy(options->error, t_error, size);
-    options->error[size] = 0;
+  constexpr size_t end = offsetof(rdm_import_config, error_size) + sizeof c->error_size;
+  if (c && c->struct_size >= end && c->struct_size <= kMaxStruct && c->error && c->error_size > 0) {
+    const size_t size = std::min(std::strlen(t_error), static_cast<size_t>(c->error_size) - 1);
+    std::memcpy(c->error, t_error, size);
+    c->error[size] = 0;
   }
   return code;
 }
@@ -71,36 +70,36 @@ void need_robot(const rdm_import* i) {
   if (i->object) refuse(RDM_ERROR_ARGUMENT, "import: it is an object, no robot");
 }
 
-rdm_import_options defaults() {
-  rdm_import_options o{};
+rdm_import_config defaults() {
+  rdm_import_config o{};
   o.kind = -1;
   return o;
 }
 
-Options read_options(const rdm_import_options* in) {
-  rdm_import_options o = defaults();
+Options read_options(const rdm_import_config* in) {
+  rdm_import_config o = defaults();
   if (in) {
     // What the first version of the struct ended with.
-    constexpr size_t first = offsetof(rdm_import_options, mend_inertia) + sizeof o.mend_inertia;
+    constexpr size_t first = offsetof(rdm_import_config, mend_inertia) + sizeof o.mend_inertia;
     if (in->struct_size < first || in->struct_size > kMaxStruct)
       refuse(RDM_ERROR_ARGUMENT,
-             "options.struct_size: %u is outside [%zu, %zu]; set it by rdm_import_options_init",
+             "config.struct_size: %u is outside [%zu, %zu]; set it by rdm_import_config_init",
              in->struct_size, first, kMaxStruct);
     std::memcpy(&o, in, std::min<size_t>(in->struct_size, sizeof o));
     if (o.error && o.error_size < 1)
-      refuse(RDM_ERROR_RANGE, "options.error_size: %d is less than 1, but error is set", o.error_size);
+      refuse(RDM_ERROR_RANGE, "config.error_size: %d is less than 1, but error is set", o.error_size);
     if (o.format < RDM_IMPORT_AUTO || o.format > RDM_IMPORT_ROBOT)
-      refuse(RDM_ERROR_RANGE, "options.format: %d is outside [0, 3]", o.format);
+      refuse(RDM_ERROR_RANGE, "config.format: %d is outside [0, 3]", o.format);
     if (o.kind < -1 || o.kind > RDM_ROBOT_ARM)
-      refuse(RDM_ERROR_RANGE, "options.kind: %d is outside [-1, 2]", o.kind);
+      refuse(RDM_ERROR_RANGE, "config.kind: %d is outside [-1, 2]", o.kind);
     if (o.skip_meshes != 0 && o.skip_meshes != 1)
-      refuse(RDM_ERROR_RANGE, "options.skip_meshes: %d is outside [0, 1]", o.skip_meshes);
+      refuse(RDM_ERROR_RANGE, "config.skip_meshes: %d is outside [0, 1]", o.skip_meshes);
     if (o.mend_inertia != 0 && o.mend_inertia != 1)
-      refuse(RDM_ERROR_RANGE, "options.mend_inertia: %d is outside [0, 1]", o.mend_inertia);
+      refuse(RDM_ERROR_RANGE, "config.mend_inertia: %d is outside [0, 1]", o.mend_inertia);
     if (!(o.density >= 0 && o.density <= 1e5))
-      refuse(RDM_ERROR_RANGE, "options.density: %g is outside [0, 1e5]", o.density);
+      refuse(RDM_ERROR_RANGE, "config.density: %g is outside [0, 1e5]", o.density);
     if (!(o.slide_range >= 0 && o.slide_range <= 1e6))
-      refuse(RDM_ERROR_RANGE, "options.slide_range: %g is outside [0, 1e6]", o.slide_range);
+      refuse(RDM_ERROR_RANGE, "config.slide_range: %g is outside [0, 1e6]", o.slide_range);
   }
   Options out;
   const auto text = [](const char* t) { return std::string(t ? t : ""); };
@@ -153,9 +152,8 @@ void try_create(rdm_robot_def def) {
 // An option that would change the robot, in a format that does not take it.
 void need_taken(const Options& o, int32_t format) {
   if (format == RDM_IMPORT_MJCF && o.density > 0)
-    refuse(
-        RDM_ERROR_ARGUMENT,
-        "options.density: of URDF alone; a geom of MJCF says its own mass or density, else has 1000 kg/m3");
+    refuse(RDM_ERROR_ARGUMENT,
+           "config.density: of URDF alone; a geom of MJCF says its own mass or density, else has 1000 kg/m3");
   if (format != RDM_IMPORT_ROBOT) return;
   const std::pair<const char*, bool> said[] = {
       {"density", o.density > 0},    {"slide_range", o.slide_range > 0}, {"root", !o.root.empty()},
@@ -163,7 +161,7 @@ void need_taken(const Options& o, int32_t format) {
       {"flange", !o.flange.empty()},
   };
   for (const auto& [name, given] : said)
-    if (given) refuse(RDM_ERROR_ARGUMENT, "options.%s: of URDF and MJCF; a .robot file says it itself", name);
+    if (given) refuse(RDM_ERROR_ARGUMENT, "config.%s: of URDF and MJCF; a .robot file says it itself", name);
 }
 
 // XML that is not well-formed up to its first element too.
@@ -214,23 +212,23 @@ int32_t read_named_task(const std::string& bytes, const std::string& file) {
 
 }  // namespace
 
-rdm_result rdm_import_options_init(rdm_import_options* options, size_t size) {
+rdm_result rdm_import_config_init(rdm_import_config* c, size_t size) {
   return call(nullptr, [&] {
-    need(options, "options");
-    if (size < sizeof *options || size > kMaxStruct)
-      refuse(RDM_ERROR_ARGUMENT, "size: %zu is outside [%zu, %zu]", size, sizeof *options, kMaxStruct);
-    std::memset(static_cast<void*>(options), 0, size);
-    rdm_import_options o = defaults();
+    need(c, "config");
+    if (size < sizeof *c || size > kMaxStruct)
+      refuse(RDM_ERROR_ARGUMENT, "size: %zu is outside [%zu, %zu]", size, sizeof *c, kMaxStruct);
+    std::memset(static_cast<void*>(c), 0, size);
+    rdm_import_config o = defaults();
     o.struct_size = static_cast<uint32_t>(size);
-    std::memcpy(options, &o, sizeof o);
+    std::memcpy(c, &o, sizeof o);
   });
 }
 
-rdm_result rdm_import_read_file(rdm_import** out, const char* path, const rdm_import_options* options) {
-  return call(options, [&] {
+rdm_result rdm_import_read_file(rdm_import** out, const char* path, const rdm_import_config* c) {
+  return call(c, [&] {
     need(out, "out");
     need(path, "path");
-    Options o = read_options(options);
+    Options o = read_options(c);
     if (!o.has_folder) o.folder = folder_of(path), o.has_folder = true;
     const std::string bytes = read_file(path, kMostXml);
     auto made = std::make_unique<rdm_import>();
@@ -245,13 +243,12 @@ rdm_result rdm_import_read_file(rdm_import** out, const char* path, const rdm_im
   });
 }
 
-rdm_result rdm_import_read(rdm_import** out, const void* bytes, size_t size,
-                           const rdm_import_options* options) {
-  return call(options, [&] {
+rdm_result rdm_import_read(rdm_import** out, const void* bytes, size_t size, const rdm_import_config* c) {
+  return call(c, [&] {
     need(out, "out");
     if (size > 0) need(bytes, "bytes");
     if (size > kMostXml) refuse(RDM_ERROR_RANGE, "size: %zu is outside [0, %zu]", size, kMostXml);
-    const Options o = read_options(options);
+    const Options o = read_options(c);
     auto made = std::make_unique<rdm_import>();
     read(std::string(static_cast<const char*>(bytes), size), o, &made->draft);
     give(out, std::move(made));

@@ -206,7 +206,7 @@ void MjcfReader::read_parts(const Element& e, const Pose& frame, const std::stri
     } else if (x.tag == "site") {
       if (const Attribute* name = x.find("name")) {
         model.frames.push_back({name->value, self, frame * pose_at(x, c)});
-        out->note(RDM_NOTE_DROPPED, x.line, "site %s: its frame can be named in options%s",
+        out->note(RDM_NOTE_DROPPED, x.line, "site %s: its frame can be named in the config%s",
                   clean(name->value).c_str(), in_file(x).c_str());
         x.seen = true;
         for (const Attribute& a : x.attributes) a.read = true;
@@ -224,7 +224,7 @@ void MjcfReader::add_body(const Element& e, int parent, const Pose& frame, const
     if (flag(e, "mocap", *t)) {
       if (model.bodies.empty() || !drops_mocap(e, c))
         refuse_at(RDM_ERROR_UNSUPPORTED, e,
-                  "mocap: a body that its host moves is not read; options.root takes another");
+                  "mocap: a body that its host moves is not read; config.root takes another");
       out->note(RDM_NOTE_DROPPED, e.line, "body %s: its host moves it (mocap), and nothing of it touches%s",
                 clean(body.name).c_str(), in_file(e).c_str());
       for (const auto& x : e.children) {
@@ -335,7 +335,7 @@ void MjcfReader::read_worlds() {
       }
     };
     for (const Element* w : mujoco.all("worldbody")) name_all(*w);
-    refuse(RDM_ERROR_NOT_FOUND, "options.root: there is no body %s%s", clean(options.root).c_str(),
+    refuse(RDM_ERROR_NOT_FOUND, "config.root: there is no body %s%s", clean(options.root).c_str(),
            nearest_hint(options.root, names).c_str());
   }
   if (top.empty() && others == 0) refuse_at(RDM_ERROR_FORMAT, mujoco, "no body in the world");
@@ -351,7 +351,7 @@ void MjcfReader::read_worlds() {
   }
   if (top.size() > 1)
     refuse_at(RDM_ERROR_ARGUMENT, *top.back().body,
-              "%zu bodies stand in the world: options.root says which is taken, or \"world\"", top.size());
+              "%zu bodies stand in the world: config.root says which is taken, or \"world\"", top.size());
   add_root(top[0]);
 }
 

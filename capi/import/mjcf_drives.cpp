@@ -243,7 +243,7 @@ void MjcfReader::read_equality(const Element& e) {
     return;
   }
   if (elsewhere(e, *one) || (two && elsewhere(e, *two))) {
-    out->note(RDM_NOTE_DROPPED, e.line, "equality: not all of its joints hang on options.root%s",
+    out->note(RDM_NOTE_DROPPED, e.line, "equality: not all of its joints hang on config.root%s",
               in_file(e).c_str());
     return;
   }
@@ -356,7 +356,7 @@ void MjcfReader::read_actuator(const Element& e) {
   std::vector<std::pair<std::string, double>> parts;
   double bound_of_tendon = -1;
   if (joint) {
-    if (elsewhere(e, *joint)) return note_left_out(e, "its joint does not hang on options.root");
+    if (elsewhere(e, *joint)) return note_left_out(e, "its joint does not hang on config.root");
     parts = {{*joint, 1}};
   } else {
     const auto found = tendons.find(*tendon);

@@ -492,7 +492,7 @@ void build(const Model& model, const Options& options, Draft* out) {
   const std::string name = fitting_name(options.name.empty() ? model.name : options.name, "robot");
   if (!options.name.empty() && name != options.name)
     refuse(RDM_ERROR_ARGUMENT,
-           "options.name: %s: a name is made of at most %zu letters, digits, '_', '-' and '+'",
+           "config.name: %s: a name is made of at most %zu letters, digits, '_', '-' and '+'",
            clean(options.name).c_str(), kLongestName);
   if (options.name.empty() && name != model.name)
     out->note(RDM_NOTE_CHANGED, model.bodies[0].element->line, "the robot %s is called %s",

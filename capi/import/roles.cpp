@@ -35,7 +35,7 @@ struct Guess {
     if (found != places.end()) return found->second;
     std::vector<std::string> names;
     for (const auto& [known, p] : places) names.push_back(known);
-    refuse(RDM_ERROR_NOT_FOUND, "options.%s: there is no link or site %s%s", option, clean(word).c_str(),
+    refuse(RDM_ERROR_NOT_FOUND, "config.%s: there is no link or site %s%s", option, clean(word).c_str(),
            nearest_hint(word, names).c_str());
   }
 
@@ -72,7 +72,7 @@ struct Guess {
     if (!options.flange.empty()) {
       at = place("flange", options.flange);
       if (at.row < 0)
-        refuse(RDM_ERROR_ARGUMENT, "options.flange: %s is part of the root", clean(options.flange).c_str());
+        refuse(RDM_ERROR_ARGUMENT, "config.flange: %s is part of the root", clean(options.flange).c_str());
     } else {
       at = {ends.size() == 1 ? ends[0] : fork, {}};
       const char* found = nullptr;
@@ -177,8 +177,7 @@ struct Guess {
         const size_t stop = std::min(options.tips.find(',', at), options.tips.size());
         const std::string word = options.tips.substr(at, stop - at);
         const Place& p = place("tips", word);
-        if (p.row < 0)
-          refuse(RDM_ERROR_ARGUMENT, "options.tips: %s is part of the root", clean(word).c_str());
+        if (p.row < 0) refuse(RDM_ERROR_ARGUMENT, "config.tips: %s is part of the root", clean(word).c_str());
         tips.push_back({p.row, norm(p.X.p) > 0, p.X.p});
         at = stop + 1;
       }
@@ -357,8 +356,7 @@ struct Guess {
       } else {
         const Place& at = place("mount", options.mount);
         if (at.row >= 0)
-          refuse(RDM_ERROR_ARGUMENT, "options.mount: %s moves against the root",
-                 clean(options.mount).c_str());
+          refuse(RDM_ERROR_ARGUMENT, "config.mount: %s moves against the root", clean(options.mount).c_str());
         X = at.X;
       }
     } else {

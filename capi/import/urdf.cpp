@@ -97,7 +97,7 @@ struct Reader {
       if (links.count(options.root)) return options.root;
       std::vector<std::string> names;
       for (const auto& [known, e] : links) names.push_back(known);
-      refuse(RDM_ERROR_NOT_FOUND, "options.root: there is no link %s%s", clean(options.root).c_str(),
+      refuse(RDM_ERROR_NOT_FOUND, "config.root: there is no link %s%s", clean(options.root).c_str(),
              nearest_hint(options.root, names).c_str());
     }
     const Element* root = nullptr;
@@ -105,7 +105,7 @@ struct Reader {
       if (child->tag == "link" && !above.count(child->find("name")->value)) {
         if (root)
           refuse_at(RDM_ERROR_ARGUMENT, *child,
-                    "no joint carries it, nor %s of line %d: options.root says which is taken",
+                    "no joint carries it, nor %s of line %d: config.root says which is taken",
                     where(*root).substr(where(*root).find(": ") + 2).c_str(), root->line);
         root = child.get();
       }
@@ -360,7 +360,7 @@ struct Reader {
   void read() {
     robot.get("name");
     if (options.density == 0)
-      model.massless_hint = ": options.density gives one to links without inertial, of their collision";
+      model.massless_hint = ": config.density gives one to links without inertial, of their collision";
     model.name = robot.find("name") ? robot.find("name")->value : "";
     find_links();
     find_joints();
@@ -375,7 +375,7 @@ struct Reader {
     if (!options.root.empty())
       for (const auto& [name, e] : links)
         if (!taken.count(name)) {
-          out->note(RDM_NOTE_DROPPED, e->line, "link %s: not below options.root", clean(name).c_str());
+          out->note(RDM_NOTE_DROPPED, e->line, "link %s: not below config.root", clean(name).c_str());
           mark(*e);
         }
   }

@@ -1,8 +1,8 @@
 /* redman/deprecated.h: the names of 0.1, and some since. Each is, or calls, what its warning names.
  *
- * Included by redman.h unless RDM_NO_DEPRECATED is defined; it goes with 1.1. The symbols stay in
- * the library as long as RDM_ABI: capi/stubs.awk writes them from the functions of the first part.
- * RDM_NO_DEPRECATION_WARNINGS keeps the compiler quiet. */
+ * Included by redman.h and import.h unless RDM_NO_DEPRECATED is defined; it goes with 1.1. The
+ * symbols of 0.1 stay in the library as long as RDM_ABI: capi/stubs.awk writes them from the
+ * functions of the first part. RDM_NO_DEPRECATION_WARNINGS keeps the compiler quiet. */
 #ifndef REDMAN_DEPRECATED_H
 #define REDMAN_DEPRECATED_H
 #include <redman/agent.h>
@@ -683,3 +683,22 @@ rdm_result rdm_task_remove(int32_t task) {
 }
 #endif
 #endif /* RDM_EXPERIMENTAL */
+
+#if defined(REDMAN_IMPORT_H) && !defined(RDM_NO_DEPRECATED) \
+    && !defined(REDMAN_DEPRECATED_IMPORT_H)
+#define REDMAN_DEPRECATED_IMPORT_H
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef rdm_import_config rdm_import_options RDM_DEPRECATED("rdm_import_config");
+
+static inline RDM_DEPRECATED("rdm_import_config_init")
+rdm_result rdm_import_options_init(rdm_import_config *c, size_t size) {
+  return rdm_import_config_init(c, size);
+}
+
+#ifdef __cplusplus
+}
+#endif
+#endif /* REDMAN_IMPORT_H */

@@ -25,7 +25,7 @@
  *
  * What is done on the way: fixed joints and their links become part of what carries them; a mesh
  * becomes the smallest of box, capsule and sphere around its corners; a joint without an end gets
- * +-2 pi, rad or m (options.slide_range). Gains come from position actuators, else kp reaches the
+ * +-2 pi, rad or m (config.slide_range). Gains come from position actuators, else kp reaches the
  * effort 0.2 rad (20 mm) off the target and kd damps critically with the inertia that the joint
  * feels at home. What no such file says (palm, fingers, tips, mount, flange, poses) is guessed, the
  * same way each time, and listed. */
@@ -51,8 +51,8 @@ enum rdm_note_kind { /* of a note */
   RDM_NOTE_CHECK = 3    /* found by rdm_import_check             */
 };
 /* how a file is read; a .robot file takes no root, roles, density or slide_range: ARGUMENT */
-typedef struct rdm_import_options {
-  uint32_t struct_size;    /* bytes, set by rdm_import_options_init */
+typedef struct rdm_import_config {
+  uint32_t struct_size;    /* bytes, set by rdm_import_config_init */
   int32_t format;          /* RDM_IMPORT_* */
   int32_t kind;            /* RDM_ROBOT_*, -1: guessed; default -1 */
   int32_t skip_meshes;     /* flag: meshes that cannot be read are dropped with a note, else
@@ -69,7 +69,7 @@ typedef struct rdm_import_options {
   const char *mount;       /* link or site, or "x y z roll pitch yaw" in the root frame; NULL:
                             * guessed */
   const char *flange;      /* link or site, "none"; NULL: guessed */
-  char *error;             /* [error_size] the text of a failing call that takes these options;
+  char *error;             /* [error_size] the text of a failing call that takes this config;
                             * NULL */
   int32_t error_size;      /* bytes, terminator included; what is longer is cut */
   int32_t mend_inertia;    /* flag: moments that break the triangle rule are raised with a note,
@@ -78,25 +78,24 @@ typedef struct rdm_import_options {
                             * weighs; 0: they weigh nothing; above 0 with another format, where
                             * geoms say their own: ARGUMENT */
   double slide_range;      /* m to either side, of a joint that slides without an end; 0: 2 pi */
-} rdm_import_options;
+} rdm_import_config;
 typedef struct rdm_import_note { /* frozen layout; texts live as long as the handle */
   int32_t kind;            /* RDM_NOTE_* */
   int32_t line;            /* of the file, from 1; 0: of none */
   const char *text;        /* one line, with the element and, in an included file, its name */
 } rdm_import_note;
 /* Fills the first `size` bytes with defaults. */
-RDM_API rdm_result rdm_import_options_init(rdm_import_options *options, size_t size);
-/* Reads a file; options may be NULL. NOT_FOUND, IO; FORMAT: malformed, with its line; ARGUMENT,
- * RANGE: a robot that cannot be, with line and element; UNSUPPORTED: an element that would change
- * the robot and is not read. What is no regular file is IO and never waited for. A file and all
- * that it includes or names cost at most 4096 files, 16 MB of text, 512 MB of meshes (64 MB each),
- * 250,000 elements, 400,000 attributes and 10 million steps of work: RANGE beyond. */
+RDM_API rdm_result rdm_import_config_init(rdm_import_config *c, size_t size);
+/* Reads a file; c may be NULL for the defaults. NOT_FOUND, IO; FORMAT: malformed, with its line;
+ * ARGUMENT, RANGE: a robot that cannot be, with line and element; UNSUPPORTED: an element that
+ * would change the robot and is not read. What is no regular file is IO and never waited for. A
+ * file and all that it includes or names cost at most 4096 files, 16 MB of text, 512 MB of meshes
+ * (64 MB each), 250,000 elements, 400,000 attributes and 10 million steps of work: RANGE beyond. */
 RDM_API rdm_result rdm_import_read_file(rdm_import **out, const char *path,
-                                        const rdm_import_options *options);
-/* The same for bytes [size] of a file. Without options.folder it has neither meshes nor
- * includes. */
+                                        const rdm_import_config *c);
+/* The same for bytes [size] of a file. Without config.folder it has neither meshes nor includes. */
 RDM_API rdm_result rdm_import_read(rdm_import **out, const void *bytes, size_t size,
-                                   const rdm_import_options *options);
+                                   const rdm_import_config *c);
 /* A robot that is there, the library's own too, as a handle that can be written. */
 RDM_API rdm_result rdm_import_create_robot(rdm_import **out, int32_t robot);
 RDM_API void rdm_import_destroy(rdm_import *i); /* NULL is fine */
@@ -140,3 +139,7 @@ RDM_API const char *rdm_import_error(void);
 }
 #endif
 #endif /* REDMAN_IMPORT_H */
+
+#if !defined(RDM_NO_DEPRECATED)
+#include <redman/deprecated.h>
+#endif

@@ -18,7 +18,7 @@
 namespace {
 
 const std::string kData = RDM_TEST_DATA "/import/";
-Import from_file(const std::string& name, const rdm_import_options* o = nullptr) {
+Import from_file(const std::string& name, const rdm_import_config* o = nullptr) {
   return from_path(kData + name, o);
 }
 
@@ -107,7 +107,7 @@ TEST(Import, RolesAreGuessedAndListed) {
   EXPECT_TRUE(i.has_note(RDM_NOTE_GUESSED, "finger thumb, the thumb: thumb_proximal to thumb_distal"));
   EXPECT_TRUE(i.has_note(RDM_NOTE_GUESSED, "palm: the root"));
   // And said by options.
-  rdm_import_options o = options();
+  rdm_import_config o = import_config();
   o.palm = "palm";
   o.tips = "index_tip,thumb_distal";
   o.mount = "0 0 -0.01 0 0 1.5707963267948966";
@@ -122,14 +122,14 @@ TEST(Import, RolesAreGuessedAndListed) {
 // An option that would change the robot is taken or refused, never passed over.
 TEST(Import, OptionsThatAFormatDoesNotTakeAreRefused) {
   const auto refused = [](const std::string& bytes, const std::string& text, auto&& set) {
-    rdm_import_options o = options();
+    rdm_import_config o = import_config();
     set(o);
     expect_refused(bytes, RDM_ERROR_ARGUMENT, text, &o);
   };
-  refused(read("hand.xml"), "options.density: of URDF alone; a geom of MJCF says its own mass or density",
+  refused(read("hand.xml"), "config.density: of URDF alone; a geom of MJCF says its own mass or density",
           [](auto& o) { o.density = 1000; });
   const std::string robot = written(from_file("hand.urdf").def);
-  for (const auto& [name, set] : std::initializer_list<std::pair<const char*, void (*)(rdm_import_options&)>>{
+  for (const auto& [name, set] : std::initializer_list<std::pair<const char*, void (*)(rdm_import_config&)>>{
            {"density", [](auto& o) { o.density = 1000; }},
            {"slide_range", [](auto& o) { o.slide_range = 1; }},
            {"root", [](auto& o) { o.root = "palm"; }},
@@ -137,7 +137,7 @@ TEST(Import, OptionsThatAFormatDoesNotTakeAreRefused) {
            {"tips", [](auto& o) { o.tips = "index_distal"; }},
            {"mount", [](auto& o) { o.mount = "palm"; }},
            {"flange", [](auto& o) { o.flange = "none"; }}})
-    refused(robot, std::string("options.") + name + ": of URDF and MJCF; a .robot file says it itself", set);
+    refused(robot, std::string("config.") + name + ": of URDF and MJCF; a .robot file says it itself", set);
 }
 
 TEST(Import, MjcfIsTheSameHand) {
@@ -406,7 +406,7 @@ struct Refusal {
   const char* text;
 };
 void expect_refusals(const std::string& good, const char* folder, const std::vector<Refusal>& rows) {
-  rdm_import_options o = options();
+  rdm_import_config o = import_config();
   char error[512];
   o.folder = folder;
   o.error = error;
@@ -517,7 +517,7 @@ TEST(Refusals, Mjcf) {
         "<actuator><position joint=\"index_bend\" ctrlrange=\"4 5\"/></actuator>", RDM_ERROR_RANGE,
         "line 30: joint index_bend: its actuator's range [4, 5]"},
        {"</worldbody>", "<body name=\"ball\"/></worldbody>", RDM_ERROR_ARGUMENT,
-        "line 70: body ball: 2 bodies stand in the world: options.root"},
+        "line 70: body ball: 2 bodies stand in the world: config.root"},
        {"angle=\"degree\"", "angle=\"turn\"", RDM_ERROR_FORMAT,
         "line 3: compiler: angle: turn is neither degree nor radian"}});
 }
@@ -554,35 +554,35 @@ TEST(Refusals, RobotText) {
 }
 
 TEST(Refusals, OptionsOfTheCall) {
-  const auto refused = [](const char* file, const rdm_import_options& o, rdm_result code, const char* text) {
+  const auto refused = [](const char* file, const rdm_import_config& o, rdm_result code, const char* text) {
     rdm_import* i = nullptr;
     EXPECT_EQ(rdm_import_read_file(&i, (kData + file).c_str(), &o), code) << text;
     EXPECT_NE(std::string(rdm_import_error()).find(text), std::string::npos) << rdm_import_error();
     rdm_import_destroy(i);
   };
-  rdm_import_options o = options();
+  rdm_import_config o = import_config();
   o.tips = "index_tip,thum_distal";
   refused("hand.urdf", o, RDM_ERROR_NOT_FOUND,
-          "options.tips: there is no link or site thum_distal; nearest is thumb_distal");
-  o = options(), o.root = "nowhere";
-  refused("hand.urdf", o, RDM_ERROR_NOT_FOUND, "options.root: there is no link nowhere");
-  refused("hand.xml", o, RDM_ERROR_NOT_FOUND, "options.root: there is no body nowhere");
-  o = options(), o.mount = "index_distal";
-  refused("hand.urdf", o, RDM_ERROR_ARGUMENT, "options.mount: index_distal moves against the root");
-  o = options(), o.format = 7;
-  refused("hand.urdf", o, RDM_ERROR_RANGE, "options.format: 7 is outside [0, 3]");
-  o = options(), o.struct_size = 3;
-  refused("hand.urdf", o, RDM_ERROR_ARGUMENT, "options.struct_size: 3");
-  o = options(), o.format = RDM_IMPORT_MJCF;
+          "config.tips: there is no link or site thum_distal; nearest is thumb_distal");
+  o = import_config(), o.root = "nowhere";
+  refused("hand.urdf", o, RDM_ERROR_NOT_FOUND, "config.root: there is no link nowhere");
+  refused("hand.xml", o, RDM_ERROR_NOT_FOUND, "config.root: there is no body nowhere");
+  o = import_config(), o.mount = "index_distal";
+  refused("hand.urdf", o, RDM_ERROR_ARGUMENT, "config.mount: index_distal moves against the root");
+  o = import_config(), o.format = 7;
+  refused("hand.urdf", o, RDM_ERROR_RANGE, "config.format: 7 is outside [0, 3]");
+  o = import_config(), o.struct_size = 3;
+  refused("hand.urdf", o, RDM_ERROR_ARGUMENT, "config.struct_size: 3");
+  o = import_config(), o.format = RDM_IMPORT_MJCF;
   refused("hand.urdf", o, RDM_ERROR_FORMAT, "no MJCF: the first element is not mujoco");
-  o = options();
+  o = import_config();
   refused("none.urdf", o, RDM_ERROR_NOT_FOUND, "none.urdf: cannot open");
   // A part of a tree, meshes that are not there, moments that are mended.
-  o = options(), o.root = "head";
+  o = import_config(), o.root = "head";
   EXPECT_EQ(from_file("gripper.urdf", &o).def.num_links, 2);
   std::string text = read("gripper.urdf");
   text.replace(text.find("izz=\"1e-5\""), 10, "izz=\"3e-5\"");
-  o = options(), o.skip_meshes = 1, o.mend_inertia = 1;
+  o = import_config(), o.skip_meshes = 1, o.mend_inertia = 1;
   rdm_import* made = nullptr;
   ASSERT_EQ(rdm_import_read(&made, text.data(), text.size(), &o), RDM_OK) << rdm_import_error();
   const Import mended(made);
@@ -592,6 +592,18 @@ TEST(Refusals, OptionsOfTheCall) {
   EXPECT_TRUE(mended.has_note(RDM_NOTE_CHANGED, "line 46: link jaw.a: principal moments"));
   EXPECT_NEAR(mended.def.links[1].moment[2], 4e-5, 1e-12);
 }
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wdeprecated-declarations"
+TEST(Import, TakesTheNameThatTheConfigHadBefore) {
+  rdm_import_options old;
+  ASSERT_EQ(rdm_import_options_init(&old, sizeof old), RDM_OK);
+  const rdm_import_config now = import_config();
+  EXPECT_EQ(std::memcmp(&old, &now, sizeof now), 0);
+  old.name = "renamed";
+  EXPECT_STREQ(from_file("hand.urdf", &old).def.name, "renamed");
+}
+#pragma GCC diagnostic pop
 
 TEST(Import, HandlesAndPointersAreChecked) {
   rdm_import* i = nullptr;
@@ -604,7 +616,7 @@ TEST(Import, HandlesAndPointersAreChecked) {
   EXPECT_EQ(rdm_import_get_robot_def(nullptr, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_import_check(nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_import_note_count(nullptr), 0);
-  EXPECT_EQ(rdm_import_options_init(nullptr, 0), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_import_config_init(nullptr, 0), RDM_ERROR_ARGUMENT);
   rdm_import_destroy(nullptr);
   const Import good = from_file("hand.urdf");
   rdm_import_note note;

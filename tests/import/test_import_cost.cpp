@@ -353,8 +353,8 @@ std::vector<Case> texts() {
 }
 
 rdm_result read(const Case& c, std::string* text) {
-  rdm_import_options o;
-  rdm_import_options_init(&o, sizeof o);
+  rdm_import_config o;
+  rdm_import_config_init(&o, sizeof o);
   rdm_import* i = nullptr;
   int32_t task = -1;
   rdm_result r = RDM_OK;

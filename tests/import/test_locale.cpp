@@ -77,8 +77,8 @@ void add_robots(std::vector<std::string>& out) {
   };
   for (const std::string text : broken)
     for (const int32_t mend : {0, 1}) {
-      rdm_import_options o;
-      rdm_import_options_init(&o, sizeof o);
+      rdm_import_config o;
+      rdm_import_config_init(&o, sizeof o);
       o.mend_inertia = mend;
       rdm_import* import = nullptr;
       if (rdm_import_read(&import, text.data(), text.size(), &o) == RDM_OK)

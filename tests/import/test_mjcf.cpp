@@ -149,7 +149,7 @@ TEST(Mjcf, TheTotalMassOfAllBodiesIsSet) {
   EXPECT_NEAR(i.def.links[0].moment[0], 0.4 * 4 * 0.05 * 0.05, 1e-12);
   EXPECT_TRUE(i.has_note(RDM_NOTE_CHANGED, "all masses times 10: together 20 kg (settotalmass)"));
   // Also of the bodies that options.root leaves out.
-  rdm_import_options o = options();
+  rdm_import_config o = import_config();
   o.root = "arm";
   EXPECT_NEAR(from_text(text, &o).def.links[0].mass, 4, 1e-12);
 }
@@ -329,7 +329,7 @@ TEST(Mjcf, PrimitivesAreFittedToMeshes) {
 }
 
 TEST(Mjcf, MassesOfMeshesThatAreNotThereAreRefused) {
-  rdm_import_options o = options();
+  rdm_import_config o = import_config();
   o.skip_meshes = 1;
   const std::string asset = "<asset><mesh name='m' file='m.obj'/></asset>";
   const std::string geom = "<geom type='mesh' mesh='m'/>";
@@ -564,7 +564,7 @@ TEST(Mjcf, TargetsOfTheHostAreDropped) {
   std::string text = file(arm(kRod));
   text.insert(text.find("</worldbody>"), target);
   EXPECT_EQ(from_text(text).def.num_links, 1);
-  rdm_import_options o = options();
+  rdm_import_config o = import_config();
   o.root = "world";
   const Import i = from_text(text, &o);
   EXPECT_EQ(i.def.num_shapes, 2);

@@ -178,7 +178,7 @@ TEST(Urdf, ABoundThatIsNoneIsNone) {
                  "lower: nan is no number");
   File slide;
   slide.type = "prismatic", slide.joint = "<limit lower='-inf' upper='inf' effort='1' velocity='1'/>";
-  rdm_import_options o = options();
+  rdm_import_config o = import_config();
   o.slide_range = 3;
   EXPECT_EQ(from_text(slide.text(), &o).def.links[0].lower, -3);
   EXPECT_DOUBLE_EQ(from_text(slide.text()).def.links[0].upper, 2 * M_PI);
@@ -233,8 +233,8 @@ TEST(Urdf, TurnsByQuaternionAndMirroredMomentsAreRead) {
 // ---- masses ----
 TEST(Urdf, ADensityWeighsLinksWithoutInertial) {
   expect_refused(with_arm(kBox), RDM_ERROR_RANGE,
-                 "link arm: it moves and has no mass: options.density gives one");
-  rdm_import_options o = options();
+                 "link arm: it moves and has no mass: config.density gives one");
+  rdm_import_config o = import_config();
   o.density = 500;
   const Import i = from_text(with_arm("<collision><origin xyz='0 0 0.3'/><geometry><box size='0.2 0.2 0.1'/>"
                                       "</geometry></collision>"),
@@ -251,7 +251,7 @@ TEST(Urdf, ADensityWeighsLinksWithoutInertial) {
       from_text(with_arm("<inertial><density value='250'/></inertial>" + kBox)).def.links[0].mass, 1);
   for (const double wrong : {-1.0, 1e6, double(NAN)}) {
     o.density = wrong;
-    expect_refused(with_arm(kBox), RDM_ERROR_RANGE, "options.density", &o);
+    expect_refused(with_arm(kBox), RDM_ERROR_RANGE, "config.density", &o);
   }
 }
 
@@ -260,7 +260,7 @@ TEST(Urdf, ADensityFillsMeshes) {
   folder.add("closed.obj", tetrahedron(0.3));
   folder.add("open.obj", tetrahedron(0.3, false));
   const auto mass = [&](const std::string& mesh) {
-    rdm_import_options o = options();
+    rdm_import_config o = import_config();
     o.density = 1000;
     return from_path(folder.add("a.urdf", with_arm("<collision><geometry><mesh filename='" + mesh +
                                                    "'/></geometry></collision>")),
@@ -288,7 +288,7 @@ TEST(Urdf, HullsOfChamferedPartsAreRight) {
         text += line;
       }
     folder.add("rod.obj", text + "f 1 2 3\n");  // open
-    rdm_import_options o = options();
+    rdm_import_config o = import_config();
     o.density = 1000;
     const Import i = from_path(
         folder.add("a.urdf",
@@ -318,7 +318,7 @@ TEST(Urdf, HullsDrawOnTheBudget) {
             "<joint name='j" + n + "' type='revolute'><parent link='l" + before + "'/><child link='l" + n +
             "'/>" + kLimit + "</joint>";
   }
-  rdm_import_options o = options();
+  rdm_import_config o = import_config();
   o.density = 1000;
   rdm_import* i = nullptr;
   EXPECT_EQ(rdm_import_read_file(&i, folder.add("many.urdf", text + "</robot>").c_str(), &o),
@@ -465,8 +465,8 @@ TEST(Urdf, NamesOfAnyScriptKeepReadableIds) {
 
 // ---- options ----
 TEST(Urdf, OptionsOfOlderCallersAreTaken) {
-  rdm_import_options o = options();
-  o.struct_size = offsetof(rdm_import_options, density);
+  rdm_import_config o = import_config();
+  o.struct_size = offsetof(rdm_import_config, density);
   o.density = -1;  // beyond what the caller knows
   EXPECT_EQ(from_text(File().text(), &o).def.num_links, 1);
 }

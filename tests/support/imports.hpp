@@ -42,24 +42,24 @@ struct Import {
   }
 };
 
-inline rdm_import_options options() {
-  rdm_import_options o;
-  EXPECT_EQ(rdm_import_options_init(&o, sizeof o), RDM_OK);
+inline rdm_import_config import_config() {
+  rdm_import_config o;
+  EXPECT_EQ(rdm_import_config_init(&o, sizeof o), RDM_OK);
   return o;
 }
-inline Import from_path(const std::string& path, const rdm_import_options* o = nullptr) {
+inline Import from_path(const std::string& path, const rdm_import_config* o = nullptr) {
   rdm_import* i = nullptr;
   EXPECT_EQ(rdm_import_read_file(&i, path.c_str(), o), RDM_OK) << rdm_import_error();
   return Import(i);
 }
-inline Import from_text(const std::string& text, const rdm_import_options* o = nullptr) {
+inline Import from_text(const std::string& text, const rdm_import_config* o = nullptr) {
   rdm_import* i = nullptr;
   EXPECT_EQ(rdm_import_read(&i, text.data(), text.size(), o), RDM_OK) << rdm_import_error();
   return Import(i);
 }
 // The text is refused with this code, and the error holds these words.
 inline void expect_refused(const std::string& text, rdm_result code, const std::string& words,
-                           const rdm_import_options* o = nullptr) {
+                           const rdm_import_config* o = nullptr) {
   rdm_import* i = nullptr;
   EXPECT_EQ(rdm_import_read(&i, text.data(), text.size(), o), code) << words << ": " << rdm_import_error();
   EXPECT_NE(std::string(rdm_import_error()).find(words), std::string::npos)

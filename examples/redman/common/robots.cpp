@@ -27,8 +27,8 @@ void ImportDelete::operator()(rdm_import* i) const {
 }
 
 Import import_robot(const std::string& file, const ImportFlags& flags) {
-  rdm_import_options o;
-  rdm_import_options_init(&o, sizeof o);
+  rdm_import_config o;
+  rdm_import_config_init(&o, sizeof o);
   o.format = place_of(flags.format, {"auto", "urdf", "mjcf", "robot"}, "--format");
   if (!flags.kind.empty()) o.kind = place_of(flags.kind, {"other", "hand", "arm"}, "--kind");
   o.skip_meshes = flags.skip_meshes;
@@ -86,8 +86,8 @@ int32_t load_robot(const std::string& file) {
 }
 
 int32_t load_robot_text(const std::string& text, const std::string& where) {
-  rdm_import_options o;
-  rdm_import_options_init(&o, sizeof o);
+  rdm_import_config o;
+  rdm_import_config_init(&o, sizeof o);
   o.format = RDM_IMPORT_ROBOT;
   rdm_import* made = nullptr;
   if (rdm_import_read(&made, text.data(), text.size(), &o) != RDM_OK)

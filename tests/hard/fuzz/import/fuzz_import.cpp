@@ -110,8 +110,8 @@ size_t fixed_bytes() {
 }
 
 void one(const unsigned char* data, size_t size) {
-  rdm_import_options o;
-  rdm_import_options_init(&o, sizeof o);
+  rdm_import_config o;
+  rdm_import_config_init(&o, sizeof o);
   const int format = static_cast<int>(pick(data, size, 5));
   if (format == kObject) return one_object(size ? data + 1 : data, size ? size - 1 : 0);
   o.format = format;
