@@ -72,11 +72,24 @@ int32_t rdm_object_count(void) {
   return num_objects();
 }
 
-rdm_result rdm_object_at(int32_t index, rdm_object* out) {
+rdm_result rdm_object_info_at(int32_t index, rdm_object_info* io) {
   return call([&] {
-    need(out, "out");
-    const ObjectRef object(index);
-    *out = {lasting(object->name), lasting(object->shape_text), object->mass};
+    check_out(io, sizeof(rdm_object_info), "io");
+    const ObjectRef ref(index);
+    rdm_object_info o{};
+    o.kind = ref->shapes.count == 1 ? static_cast<int32_t>(ref->shapes[0].kind) : -1;
+    o.num_shapes = ref->shapes.count;
+    o.own = index >= Objects::num_own();
+    o.name = lasting(ref->name);
+    o.alias = lasting(ref->alias);
+    o.summary = lasting(ref->help);
+    o.shape = lasting(ref->shape_text);
+    o.mass = ref->mass;
+    o.friction = ref->material.friction;
+    const ObjectBox box = object_box(*ref);
+    put(box.low, o.low);
+    put(box.high, o.high);
+    write_struct(io, o, sizeof(rdm_object_info), "io");
   });
 }
 

@@ -30,11 +30,11 @@ Report list_objects(const ObjectsFlags& flags) {
   Json all = Json::array();
   Table table({"object", "shape", "mass", "friction", "surface", "summary"});
   for (int32_t i = 0; i < rdm_object_count(); ++i) {
-    rdm_object object;
+    rdm_object_info object = RDM_INIT(rdm_object_info);
     rdm_object_def def;
     rdm_object_def_init(&def, sizeof def);
     // An object that was destroyed leaves its number.
-    if (rdm_object_at(i, &object) != RDM_OK || rdm_object_get_def(i, &def) != RDM_OK) continue;
+    if (rdm_object_info_at(i, &object) != RDM_OK || rdm_object_get_def(i, &def) != RDM_OK) continue;
     all.push_back({{"name", object.name},
                    {"alias", def.alias ? Json(def.alias) : Json()},
                    {"shape", object.shape},

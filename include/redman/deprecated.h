@@ -48,6 +48,11 @@ typedef struct rdm_joint {  /* frozen layout */
   int32_t action;           /* entry of the hand's action, -1: none                           */
   int32_t reserved;         /* 0                                                              */
 } rdm_joint;
+typedef struct rdm_object { /* frozen layout: a thing by name, for option object=... */
+  const char *name;         /* "egg"                                                          */
+  const char *shape;        /* "capsule r 0.03, straight part 0.02": kind and sizes in m      */
+  double mass;              /* kg; hull: of the default points, 500 kg/m3                     */
+} rdm_object;
 typedef struct rdm_shape {   /* frozen layout: what the scene is made of, the same for all worlds */
   const char *name;          /* "right.ff_distal" */
   float size[3];             /* m: radius | radius, half length along z | half sizes (hull: of
@@ -201,6 +206,18 @@ rdm_result rdm_robot_joint(int32_t robot, int32_t i, rdm_joint *out) {
     out->effort = info.effort;
     out->action = info.action;
     out->reserved = 0;
+  }
+  return r;
+}
+
+static inline RDM_DEPRECATED("rdm_object_info_at")
+rdm_result rdm_object_at(int32_t index, rdm_object *out) {
+  rdm_object_info info = RDM_INIT(rdm_object_info);
+  const rdm_result r = rdm_object_info_at(index, out ? &info : NULL);
+  if (r == RDM_OK) {
+    out->name = info.name;
+    out->shape = info.shape;
+    out->mass = info.mass;
   }
   return r;
 }

@@ -53,7 +53,7 @@ RDM_API rdm_result rdm_object_def_init(rdm_object_def *def,
  * live as long as the object. */
 RDM_API rdm_result rdm_object_get_def(int32_t object, rdm_object_def *io);
 RDM_API rdm_result rdm_object_shape_at(int32_t object, int32_t i, rdm_shape_def *out);
-/* Adds an object under a number of its own, *out for rdm_object_at and what is here.
+/* Adds an object under a number of its own, *out for rdm_object_info_at and what is here.
  * ARGUMENT, RANGE: the text names the row; a name that is taken is an ARGUMENT. Objects belong to
  * the process; any number of threads may look meanwhile. */
 RDM_API rdm_result rdm_object_create(int32_t *out, const rdm_object_def *def);

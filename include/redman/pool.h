@@ -90,13 +90,24 @@ typedef struct rdm_joint_info { /* a joint of a robot, a scene or a pool's world
 RDM_API rdm_result rdm_robot_joint_at(int32_t robot, int32_t i,
                                       rdm_joint_info *io); /* i < num_joints; RANGE past the end */
 
-typedef struct rdm_object { /* frozen layout: a thing by name, for option object=... */
+typedef struct rdm_object_info { /* a thing by name, for option object=... */
+  uint32_t struct_size;     /* in: bytes                                                      */
+  int32_t kind;             /* RDM_SHAPE_* of its only shape; -1: it has several              */
+  int32_t num_shapes;       /* count                                                          */
+  int32_t own;              /* flag: a host's own, by rdm_object_create                       */
   const char *name;         /* "egg"                                                          */
+  const char *alias;        /* another name, "025_mug"; NULL: none                            */
+  const char *summary;      /* one line, may be ""                                            */
   const char *shape;        /* "capsule r 0.03, straight part 0.02": kind and sizes in m      */
   double mass;              /* kg; hull: of the default points, 500 kg/m3                     */
-} rdm_object;
+  double friction;          /* coefficient of its surface on dry things                       */
+  double low[3];            /* m, lowest corner of the box around what can be touched of it, from
+                             * its centre of mass, along the axes of its description          */
+  double high[3];           /* m, highest corner of it                                        */
+} rdm_object_info;
 RDM_API int32_t rdm_object_count(void); /* as rdm_task_count */
-RDM_API rdm_result rdm_object_at(int32_t index, rdm_object *out); /* errors as rdm_task_at */
+RDM_API rdm_result rdm_object_info_at(int32_t index,
+                                      rdm_object_info *io); /* errors as rdm_task_at */
 RDM_API rdm_result rdm_object_find(const char *name, int32_t *index); /* name or alias;
                                                                        * NOT_FOUND: nearest in
                                                                        * the text */

@@ -10,6 +10,7 @@
 #include "base/error.hpp"
 #include "base/format.hpp"
 #include "base/text.hpp"
+#include "physics/collision/convex.hpp"
 #include "physics/model/inertia.hpp"
 
 namespace rdm {
@@ -113,6 +114,30 @@ BodyDef make_object_body(const Object& object, const char* name, const Pose& X_W
     for (double& m : body.inertia.moment) m *= scale * scale;
   }
   return body;
+}
+
+ObjectBox object_box(const Object& object) {
+  constexpr double kFar = 1e9;  // m, beyond all
+  ObjectBox box{{kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
+  const auto hold = [&](const Vec3& p) {
+    for (int axis = 0; axis < 3; ++axis) {
+      box.low[axis] = std::min(box.low[axis], p[axis]);
+      box.high[axis] = std::max(box.high[axis], p[axis]);
+    }
+  };
+  for (const ShapeDef& s : make_object_body(object, object.name, {}).shapes) {
+    if (!s.collides) continue;
+    for (const Vec3& p : s.points) hold(s.X_LS * p);
+    if (s.kind == ShapeKind::kHull) continue;
+    const Convex solid{s.kind, s.size, s.X_LS.p, to_matrix(s.X_LS.q), nullptr};
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double way : {-1.0, 1.0}) {
+        Vec3 direction;
+        direction[axis] = way;
+        hold(farthest(solid, direction));
+      }
+  }
+  return box;
 }
 
 namespace {

@@ -39,6 +39,12 @@ inline constexpr int32_t kMaxObjectShapes = 64;
 // Mass, centre and moments in the object's frame.
 Inertia object_inertia(const Object& object);
 
+// Around what can be touched of it, along the axes of its frame, from the centre of mass, m.
+struct ObjectBox {
+  Vec3 low, high;
+};
+ObjectBox object_box(const Object& object);
+
 // The object as the body `name`, its origin at the centre of mass, axes as in the table. mass <= 0: its own;
 // moments go along. Sizes are `scale` times as large. Its shapes are called name, name_1, name_2 ...
 BodyDef make_object_body(const Object& object, const char* name, const Pose& X_WB, double mass = 0,

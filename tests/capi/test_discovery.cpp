@@ -248,14 +248,19 @@ TEST(Discovery, RobotsAndObjects) {
     EXPECT_EQ(*actions.rbegin(), robot.num_actuated - 1);
     EXPECT_EQ(rdm_robot_joint_at(r, robot.num_joints, &joint), RDM_ERROR_RANGE);
   }
-  rdm_object object;
+  rdm_object_info object = RDM_INIT(rdm_object_info);
   ASSERT_GT(rdm_object_count(), 0);
   for (int32_t i = 0; i < rdm_object_count(); ++i) {
-    ASSERT_EQ(rdm_object_at(i, &object), RDM_OK);
+    ASSERT_EQ(rdm_object_info_at(i, &object), RDM_OK);
     EXPECT_GT(object.mass, 0) << object.name;
     EXPECT_GT(std::strlen(object.shape), 0u) << object.name;
+    EXPECT_GT(std::strlen(object.summary), 0u) << object.name;
+    EXPECT_GT(object.friction, 0) << object.name;
+    EXPECT_EQ(object.own, 0) << object.name;
+    EXPECT_EQ(object.kind<0, object.num_shapes> 1) << object.name;
+    for (size_t k = 0; k < 3; ++k) EXPECT_LT(object.low[k], object.high[k]) << object.name;
   }
-  EXPECT_EQ(rdm_object_at(rdm_object_count(), &object), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_object_info_at(rdm_object_count(), &object), RDM_ERROR_RANGE);
 }
 
 TEST(Discovery, SurvivesBadCalls) {
@@ -268,7 +273,7 @@ TEST(Discovery, SurvivesBadCalls) {
   EXPECT_EQ(rdm_algo_find(nullptr, &index), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_algo_option_at(0, 0, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_robot_at(0, nullptr), RDM_ERROR_ARGUMENT);
-  EXPECT_EQ(rdm_object_at(0, nullptr), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_object_info_at(0, nullptr), RDM_ERROR_ARGUMENT);
   rdm_task task;
   task.struct_size = 4;
   EXPECT_EQ(rdm_task_at(0, &task), RDM_ERROR_ARGUMENT);

@@ -163,5 +163,20 @@ TEST(OldRows, OfJoints) {
   EXPECT_EQ(rdm_robot_joint(robot, 0, nullptr), RDM_ERROR_ARGUMENT);
 }
 
+TEST(OldRows, OfObjects) {
+  rdm_object_info object = RDM_INIT(rdm_object_info);
+  rdm_object old;
+  int32_t i = 0;
+  for (; rdm_object_info_at(i, &object) == RDM_OK; ++i) {
+    ASSERT_EQ(rdm_object_at(i, &old), RDM_OK);
+    EXPECT_STREQ(old.name, object.name);
+    EXPECT_STREQ(old.shape, object.shape);
+    EXPECT_EQ(old.mass, object.mass);
+  }
+  EXPECT_GT(i, 60);
+  EXPECT_EQ(rdm_object_at(i, &old), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_object_at(0, nullptr), RDM_ERROR_ARGUMENT);
+}
+
 }  // namespace
 #pragma GCC diagnostic pop

@@ -73,8 +73,8 @@ TEST(Objects, EveryOneCanBeMadeAgain) {
   Objects own;
   const int32_t count = rdm_object_count();
   for (int32_t i = 0; i < count; ++i) {
-    rdm_object object;
-    ASSERT_EQ(rdm_object_at(i, &object), RDM_OK);
+    rdm_object_info object = RDM_INIT(rdm_object_info);
+    ASSERT_EQ(rdm_object_info_at(i, &object), RDM_OK);
     Described d(object.name);
     EXPECT_EQ(d.def.mass, object.mass);
     d.def.name = "made_again", d.def.alias = nullptr;
@@ -94,6 +94,45 @@ TEST(Objects, EveryOneCanBeMadeAgain) {
     own.made.clear();
   }
   EXPECT_EQ(rdm_object_count(), count);
+}
+
+TEST(Objects, SayWhatTheyAre) {
+  Objects own;
+  int32_t index = -1;
+  rdm_object_info info = RDM_INIT(rdm_object_info);
+  ASSERT_EQ(rdm_object_find("mug_with_handle", &index), RDM_OK);
+  ASSERT_EQ(rdm_object_info_at(index, &info), RDM_OK);
+  EXPECT_STREQ(info.name, "mug_with_handle");
+  EXPECT_STREQ(info.alias, "025_mug");
+  EXPECT_EQ(info.kind, -1);
+  EXPECT_EQ(info.num_shapes, 12);
+  EXPECT_EQ(info.own, 0);
+  EXPECT_EQ(info.friction, 0.3);
+  EXPECT_NEAR(info.high[2] - info.low[2], 0.082, 1e-9);
+
+  // Half a metre beside the frame's origin: what is told is from the centre of mass.
+  rdm_shape_def box{};
+  box.kind = RDM_SHAPE_BOX, box.size[0] = 0.02, box.size[1] = 0.03, box.size[2] = 0.06, box.pose.p[0] = 0.5;
+  rdm_object_def d;
+  ASSERT_EQ(rdm_object_def_init(&d, sizeof d), RDM_OK);
+  d.name = "said", d.shapes = &box, d.num_shapes = 1, d.mass = 0.2, d.friction = 0.7;
+  ASSERT_EQ(rdm_object_info_at(own.create(d), &info), RDM_OK);
+  EXPECT_STREQ(info.name, "said");
+  EXPECT_EQ(info.alias, nullptr);
+  EXPECT_STREQ(info.summary, "");
+  EXPECT_STREQ(info.shape, "box 0.04 x 0.06 x 0.12");
+  EXPECT_EQ(info.kind, RDM_SHAPE_BOX);
+  EXPECT_EQ(info.num_shapes, 1);
+  EXPECT_EQ(info.own, 1);
+  EXPECT_EQ(info.mass, 0.2);
+  EXPECT_EQ(info.friction, 0.7);
+  for (size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(info.low[k], -box.size[k], 1e-12);
+    EXPECT_NEAR(info.high[k], box.size[k], 1e-12);
+  }
+
+  info.struct_size = 4;
+  EXPECT_EQ(rdm_object_info_at(index, &info), RDM_ERROR_ARGUMENT);
 }
 
 TEST(Objects, OnesOwnIsTakenByTheTasks) {

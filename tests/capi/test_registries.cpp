@@ -54,8 +54,8 @@ rdm_result add_object(const char* name, int32_t* number) {
   return rdm_object_create(number, &d);
 }
 rdm_result object_name(int32_t number, const char** name) {
-  rdm_object o{};
-  const rdm_result code = rdm_object_at(number, &o);
+  rdm_object_info o = RDM_INIT(rdm_object_info);
+  const rdm_result code = rdm_object_info_at(number, &o);
   *name = o.name;
   return code;
 }
@@ -204,11 +204,11 @@ TEST(Registries, ANumberThatWasKeptTooLongIsRefusedEverywhere) {
   refused(gone[0], rdm_robot_create_mounted(&made, "mounted", robot, 0, 0, 0, 0));
   refused(gone[0], rdm_robot_create_mounted(&made, "mounted", next[0], robot, 0, 0, 0));
   refused(gone[0], rdm_robot_destroy(robot));
-  rdm_object o;
+  rdm_object_info o = RDM_INIT(rdm_object_info);
   rdm_object_def od;
   ASSERT_EQ(rdm_object_def_init(&od, sizeof od), RDM_OK);
   rdm_shape_def body;
-  refused(gone[1], rdm_object_at(object, &o));
+  refused(gone[1], rdm_object_info_at(object, &o));
   refused(gone[1], rdm_object_get_def(object, &od));
   refused(gone[1], rdm_object_shape_at(object, 0, &body));
   refused(gone[1], rdm_object_destroy(object));

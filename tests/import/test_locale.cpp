@@ -99,9 +99,10 @@ void add_robots(std::vector<std::string>& out) {
 }
 
 void add_objects(std::vector<std::string>& out) {
-  rdm_object object;
+  rdm_object_info object = RDM_INIT(rdm_object_info);
   for (int32_t i = 0; i < rdm_object_count(); ++i)
-    if (rdm_object_at(i, &object) == RDM_OK) out.push_back(std::string(object.name) + ": " + object.shape);
+    if (rdm_object_info_at(i, &object) == RDM_OK)
+      out.push_back(std::string(object.name) + ": " + object.shape);
   const std::string text =
       "format = 1\nname = \"locale_ball\"\nmass = 0.0625\n[[shapes]]\nkind = \"capsule\"\nsize = [0.0125, "
       "0.0375]\n";
@@ -120,7 +121,7 @@ void add_objects(std::vector<std::string>& out) {
   out.push_back(written);
   int32_t index = -1;
   EXPECT_EQ(rdm_object_create(&index, &def), RDM_OK) << rdm_last_error();
-  if (rdm_object_at(index, &object) == RDM_OK) out.emplace_back(object.shape);
+  if (rdm_object_info_at(index, &object) == RDM_OK) out.emplace_back(object.shape);
   EXPECT_EQ(rdm_object_destroy(index), RDM_OK);
   rdm_import_destroy(import);
 }

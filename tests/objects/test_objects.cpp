@@ -149,11 +149,32 @@ TEST(Objects, MeasureWhatTheirRowsSay) {
         low[axis] = std::min(low[axis], s.X_LS.p[axis] - reach);
       }
     }
+    const ObjectBox box = object_box(named(row.name));
+    EXPECT_LT(norm(box.low - low), 1e-12) << row.name;
+    EXPECT_LT(norm(box.high - high), 1e-12) << row.name;
     double lengths[3] = {high.x - low.x, high.y - low.y, high.z - low.z};
     std::sort(lengths, lengths + 3);
     const double asked[3] = {row.least, row.middle, row.most};
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(lengths[i], asked[i], 0.004) << row.name << " " << i;
   }
+}
+
+TEST(Objects, ABoxIsFromTheCentreOfMassAroundWhatCanBeTouched) {
+  const Quat up = axis_angle({0, 1, 0}, M_PI / 2);  // along x
+  ObjectShape shapes[] = {{ShapeKind::kCylinder, {0.02, 0.1, 0}, {0.3, 0, 0}, up, {}},
+                          {ShapeKind::kSphere, {0.5, 0, 0}, {0.3, 0, 0}, {}, {}}};
+  shapes[1].collides = false;
+  Object o{};
+  o.name = "seen", o.mass = 1, o.shapes = {shapes, 1};
+  ObjectBox box = object_box(o);
+  EXPECT_LT(norm(box.low - Vec3{-0.1, -0.02, -0.02}), 1e-12);
+  EXPECT_LT(norm(box.high - Vec3{0.1, 0.02, 0.02}), 1e-12);
+  o.shapes = {shapes, 2};
+  box = object_box(o);
+  EXPECT_LT(norm(box.high - Vec3{0.1, 0.02, 0.02}), 1e-12);
+  shapes[1].collides = true;
+  box = object_box(o);
+  EXPECT_LT(norm(box.high - Vec3{0.5, 0.5, 0.5}), 1e-12);
 }
 
 TEST(Objects, AreSoundAndDiffer) {

@@ -431,7 +431,9 @@ class Discovery(unittest.TestCase):
 
     def test_algos_robots_objects(self):
         self.assertIn("clip", redman.algo("ppo_lag").options)
-        self.assertIn("egg", redman.objects())
+        egg = redman.objects()["egg"]
+        self.assertEqual((egg.kind, egg.num_shapes, egg.own, egg.mass), (redman.ShapeKind.CAPSULE, 1, 0, 0.0754))
+        self.assertEqual(egg.high, (0.03, 0.03, 0.04))
         for robot in redman.robots().values():
             self.assertEqual(len(robot.joints), robot.num_joints)
 

@@ -180,8 +180,9 @@ class Trial {
   double object_mass() const {
     for (const rdm_option& o : case_.options)
       if (std::strcmp(o.key, "object_mass") == 0) return o.number;
-    rdm_object egg{};
-    for (int32_t i = 0; rdm_object_at(i, &egg) == RDM_OK && std::strcmp(egg.name, "egg") != 0; ++i) continue;
+    rdm_object_info egg = RDM_INIT(rdm_object_info);
+    for (int32_t i = 0; rdm_object_info_at(i, &egg) == RDM_OK && std::strcmp(egg.name, "egg") != 0; ++i)
+      continue;
     return egg.mass;
   }
 

@@ -12,14 +12,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ._abi import (Autoreset, BaselineKind, Build, JointKind, MapInfo, Object, OptionKind, OptionLevel, PolicyInfo,
-                   PoolStats, RayHit, ResultCode, ShapeKind, Spec, Status)
+from ._abi import (Autoreset, BaselineKind, Build, JointKind, MapInfo, OptionKind, OptionLevel, PolicyInfo, PoolStats,
+                   RayHit, ResultCode, ShapeKind, Spec, Status)
 from ._actor import Actor
 from ._agent import Agent, CostLimits, Epoch
 from ._callbacks import c_function
 from ._curve import Curve, Curves, curve
-from ._discovery import (Algo, Camera, Cost, Field, Joint, Option, Robot, Shape, Task, algo, algos, build, objects,
-                         robots, task, tasks)
+from ._discovery import (Algo, Camera, Cost, Field, Joint, Object, Option, Robot, Shape, Task, algo, algos, build,
+                         objects, robots, task, tasks)
 from ._error import (AllocationError, ArgumentError, CancelledError, Error, FileError, FormatError, InternalError,
                      MissingFileError, NotFoundError, PhysicsError, RangeError, StateError, UnsupportedError, UsageError,
                      VersionError)

@@ -880,27 +880,63 @@ class rdm_joint_info(Structure):
     ]
 
 
-class Object(Record):
-    """The values of rdm_object."""
+class ObjectInfo(Record):
+    """The values of rdm_object_info."""
 
+    kind: int  # RDM_SHAPE_* of its only shape; -1: it has several
+    num_shapes: int  # count
+    own: int  # flag: a host's own, by rdm_object_create
     name: str  # "egg"
+    alias: str | None  # another name, "025_mug"; NULL: none
+    summary: str  # one line, may be ""
     shape: str  # "capsule r 0.03, straight part 0.02": kind and sizes in m
     mass: float  # kg; hull: of the default points, 500 kg/m3
+    friction: float  # coefficient of its surface on dry things
+    low: tuple[float, ...]  # m, lowest corner of the box around what can be touched of it, from its centre of mass, along the axes of its description
+    high: tuple[float, ...]  # m, highest corner of it
 
 
-class rdm_object(Structure):
-    """name: "egg"
+class rdm_object_info(Structure):
+    """struct_size: in: bytes
+    kind: RDM_SHAPE_* of its only shape; -1: it has several
+    num_shapes: count
+    own: flag: a host's own, by rdm_object_create
+    name: "egg"
+    alias: another name, "025_mug"; NULL: none
+    summary: one line, may be ""
     shape: "capsule r 0.03, straight part 0.02": kind and sizes in m
     mass: kg; hull: of the default points, 500 kg/m3
+    friction: coefficient of its surface on dry things
+    low: m, lowest corner of the box around what can be touched of it, from its centre of mass, along the axes
+        of its description
+    high: m, highest corner of it
     """
 
+    struct_size: int
+    kind: int
+    num_shapes: int
+    own: int
     name: bytes | None
+    alias: bytes | None
+    summary: bytes | None
     shape: bytes | None
     mass: float
+    friction: float
+    low: Any
+    high: Any
     _fields_ = [
+        ("struct_size", c_uint32),
+        ("kind", c_int32),
+        ("num_shapes", c_int32),
+        ("own", c_int32),
         ("name", c_char_p),
+        ("alias", c_char_p),
+        ("summary", c_char_p),
         ("shape", c_char_p),
         ("mass", c_double),
+        ("friction", c_double),
+        ("low", c_double * 3),
+        ("high", c_double * 3),
     ]
 
 
@@ -3409,7 +3445,7 @@ STRUCTS: dict[str, type[Structure]] = {
     "rdm_camera_info": rdm_camera_info,
     "rdm_robot": rdm_robot,
     "rdm_joint_info": rdm_joint_info,
-    "rdm_object": rdm_object,
+    "rdm_object_info": rdm_object_info,
     "rdm_pool_config": rdm_pool_config,
     "rdm_buffers": rdm_buffers,
     "rdm_shape_info": rdm_shape_info,
@@ -3782,8 +3818,8 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {},
         {}, False,
         """as rdm_task_count"""),
-    "rdm_object_at": Function(
-        c_int32, {"index": c_int32, "out": POINTER(rdm_object)},
+    "rdm_object_info_at": Function(
+        c_int32, {"index": c_int32, "io": POINTER(rdm_object_info)},
         {}, False,
         """errors as rdm_task_at"""),
     "rdm_object_find": Function(
@@ -4867,7 +4903,7 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_object_create": Function(
         c_int32, {"out": c_void_p, "def": POINTER(rdm_object_def)},
         {}, True,
-        """Adds an object under a number of its own, *out for rdm_object_at and what is here.
+        """Adds an object under a number of its own, *out for rdm_object_info_at and what is here.
         ARGUMENT, RANGE: the text names the row; a name that is taken is an ARGUMENT. Objects belong to
         the process; any number of threads may look meanwhile.
         """),

@@ -56,6 +56,10 @@ class Shape(_abi.ShapeInfo):
     """A part of what the scene is made of; kind is a redman.ShapeKind."""
 
 
+class Object(_abi.ObjectInfo):
+    """A thing by name, for option object; kind is the redman.ShapeKind of its only shape, -1 where it has several."""
+
+
 class Joint(_abi.JointInfo):
     """A joint of a robot, or of a pool's worlds; kind is a redman.JointKind."""
 
@@ -181,10 +185,10 @@ def robots() -> dict[str, Robot]:
     return {robot.name: robot for robot in _listed(Robot, lib.rdm_robot_count())}
 
 
-def objects() -> dict[str, _abi.Object]:
+def objects() -> dict[str, Object]:
     """All objects by name, for option object."""
     return {thing.name: thing for thing in _listed(
-        lambda index: _abi.Object(filled(_abi.rdm_object, lib.rdm_object_at, index)), lib.rdm_object_count())}
+        lambda index: Object(filled(_abi.rdm_object_info, lib.rdm_object_info_at, index)), lib.rdm_object_count())}
 
 
 def build() -> _abi.Build:

@@ -15,8 +15,8 @@ namespace tool {
 std::vector<std::string> object_names() {
   std::vector<std::string> names;
   for (int32_t i = 0; i < rdm_object_count(); ++i) {
-    rdm_object object;  // one that was destroyed leaves its number
-    if (rdm_object_at(i, &object) == RDM_OK) names.emplace_back(object.name);
+    rdm_object_info object = RDM_INIT(rdm_object_info);  // one that was destroyed leaves its number
+    if (rdm_object_info_at(i, &object) == RDM_OK) names.emplace_back(object.name);
   }
   return names;
 }

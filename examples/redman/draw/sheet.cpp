@@ -198,8 +198,8 @@ Sheet draw_sheet(int32_t side, int32_t columns) {
   Sheet out;
   std::vector<Shown> all;
   for (int32_t i = 0; i < rdm_object_count(); ++i) {
-    rdm_object object;
-    if (rdm_object_at(i, &object) != RDM_OK) continue;
+    rdm_object_info object = RDM_INIT(rdm_object_info);
+    if (rdm_object_info_at(i, &object) != RDM_OK) continue;
     out.names.emplace_back(object.name);
     all.push_back(show_object(i));
   }
