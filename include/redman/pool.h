@@ -187,8 +187,8 @@ RDM_API rdm_result rdm_pool_get_initial_mean(const rdm_pool *p, float *action);
  * back exactly. RANGE for a text that is longer: rdm_pool_get_settings has it. Behind the task's
  * num_options come keys with a FIELD that were set, in order; RANGE ends them. */
 RDM_API rdm_result rdm_pool_setting_at(const rdm_pool *p, int32_t i, const char **key, char *text);
-/* All options as text [capacity] of lines key=value: given as settings they make the same pool
- * again. */
+/* All options as text [capacity] of lines key=value, but with option level those that it draws:
+ * given as settings they make the same pool again. */
 RDM_API rdm_result rdm_pool_get_settings(const rdm_pool *p, char *text, size_t capacity,
                                          size_t *size);
 

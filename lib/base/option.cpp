@@ -316,6 +316,8 @@ bool Options::print(int32_t i, char* out) const {
 
 size_t Options::print_lines(char* out, size_t capacity) const {
   size_t length = 0;
+  const int32_t level = find("level");
+  const bool drawn = level >= 0 && rows_[static_cast<size_t>(level)].value.low > 0;
   for (const bool writes : {false, true}) {
     if (writes && length >= capacity) break;
     char* at = out;
@@ -327,6 +329,8 @@ size_t Options::print_lines(char* out, size_t capacity) const {
     };
     for (int32_t i = 0; i < count(); ++i) {
       if (spec(i).open && !open_name(i)) continue;
+      // given by its own value, the level would no more draw it
+      if (drawn && spec(i).levelled && !rows_[static_cast<size_t>(i)].given) continue;
       char text[kOptionTextSize];
       const char* value = print(i, text) ? text : rows_[static_cast<size_t>(i)].long_text.data();
       put(key(i), std::strlen(key(i)));

@@ -22,16 +22,17 @@ enum class OptionLevel : int32_t { kBasic = 0, kAdvanced = 1, kLegacy = 2 };
 struct OptionSpec {
   const char* key;
   OptionKind kind;
-  double number;         // default of number, integer and flag
-  double low, high;      // bounds, inclusive; unused for text
-  const char* text;      // default of a text option; of a row that takes a range a default "a..b", else null
-  const char* choices;   // text: allowed words separated by '|', or null for free text
-  const char* help;      // one line with unit
-  bool live;             // may change after creation (rdm_agent_set_option)
-  int32_t longest = 63;  // characters of a text
-  bool range = false;    // a number or integer that may be given as "a..b"
-  bool open = false;     // what stands behind the last '.' of the key is any name
-  bool chooses = false;  // what other rows the table has follows from it
+  double number;          // default of number, integer and flag
+  double low, high;       // bounds, inclusive; unused for text
+  const char* text;       // default of a text option; of a row that takes a range a default "a..b", else null
+  const char* choices;    // text: allowed words separated by '|', or null for free text
+  const char* help;       // one line with unit
+  bool live;              // may change after creation (rdm_agent_set_option)
+  int32_t longest = 63;   // characters of a text
+  bool range = false;     // a number or integer that may be given as "a..b"
+  bool levelled = false;  // option level says what is drawn of it, unless it is given
+  bool open = false;      // what stands behind the last '.' of the key is any name
+  bool chooses = false;   // what other rows the table has follows from it
   OptionLevel level = OptionLevel::kAdvanced;
 };
 
@@ -54,6 +55,11 @@ constexpr OptionSpec text_option(const char* key, const char* value, const char*
 // The row, which then takes "a..b" as well: drawable(number_option("object_mass", 0.1, 0, 1, "kg")).
 constexpr OptionSpec drawable(OptionSpec row) {
   row.range = true;
+  return row;
+}
+// The same, of which option level draws a share unless the row is given.
+constexpr OptionSpec levelled(OptionSpec row) {
+  row.range = row.levelled = true;
   return row;
 }
 // The row of a key such as "noise.FIELD", whose last word stands for any name.
@@ -147,7 +153,7 @@ class Options {
   // Current value as text ("0.5", "0.7..1.3", "egg") of kOptionTextSize bytes, which reads back exactly.
   // False for a text that is longer: it is cut.
   bool print(int32_t i, char* out) const;
-  // All values as lines for set_lines, into at most `capacity` bytes (none when it is less than all need);
+  // All values as lines for set_lines, but where a level draws for those that it draws, into at most `capacity` bytes (none when it is less than all need);
   // the length without terminator.
   size_t print_lines(char* out, size_t capacity) const;
   // Changes the default of one key (a task's or an algorithm's own default); bounds are checked.

@@ -16,26 +16,11 @@ constexpr auto kRows = row<&LevelOptions::level>(basic(
                    "within 0, 10, "
                    "20 or 30 % of what they are, but for options that are given")));
 constexpr double kSpread[] = {0, 0.1, 0.2, 0.3};
-constexpr const char* kLevelled[] = {"scale.mass",
-                                     "scale.kp",
-                                     "scale.kd",
-                                     "scale.effort",
-                                     "scale.friction",
-                                     "object_mass",
-                                     "object_damping",
-                                     "friction.hand_object",
-                                     "friction.object_ground"};
-
-bool levelled(const char* key) {
-  return std::any_of(std::begin(kLevelled), std::end(kLevelled),
-                     [&](const char* k) { return same_name(k, key); });
-}
-
 // What is drawn is a factor on the scene's own number, which is the middle of the range that was given; of a
 // level, a factor about 1.
 OptionRange factor_of(const Options& o, const char* key) {
   if (!o.given(key)) {
-    const double spread = levelled(key) && kRows.known_to(o) ? kSpread[kRows.read(o).level] : 0;
+    const double spread = o.spec_of(key)->levelled && kRows.known_to(o) ? kSpread[kRows.read(o).level] : 0;
     return {1 - spread, 1 + spread};
   }
   const OptionRange range = o.range(key);

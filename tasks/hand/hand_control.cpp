@@ -31,7 +31,7 @@ constexpr auto kRows = option_rows<HandOptions>(
     row<&HandOptions::arm_gravity, ArmGravity::kCompensated, ArmGravity::kFree, ArmGravity::kOff>(text_option(
         "arm_gravity", "compensated", "compensated|free|off",
         "of arms: gravity held by feed-forward, left to the drives, or (the paper's) none; hands feel none")),
-    row<&HandOptions::friction_object>(drawable(
+    row<&HandOptions::friction_object>(levelled(
         basic(number_option("friction.hand_object", 1, 0, 10, "friction coefficient of hands and object")))),
     row<&HandOptions::friction_self>(
         drawable(number_option("friction.hand_self", 0, 0, 10, "friction coefficient inside one hand"))),

@@ -32,7 +32,7 @@ constexpr auto kRows = option_rows<ObjectOptions>(
         "hull", kOctahedron, nullptr,
         "points of object=hull, m, at most 32: x,y,z;x,y,z;... (redman hull makes them)", kHullTextSize - 1)),
     row<&ObjectOptions::object_mass>(
-        drawable(basic(number_option("object_mass", 0, 0, 10, "mass of the object, kg; 0: its own")))),
+        levelled(basic(number_option("object_mass", 0, 0, 10, "mass of the object, kg; 0: its own")))),
     row<&ObjectOptions::start_x>(number_option("start.x", 0, -10, 10, "start position, m")),
     row<&ObjectOptions::start_y>(number_option("start.y", 0, -10, 10, "start position, m")),
     row<&ObjectOptions::start_z>(number_option("start.z", 0, -10, 10, "start position, m")),
@@ -46,7 +46,7 @@ constexpr auto kRows = option_rows<ObjectOptions>(
                     "rotation of the object at the start; yaw: about the vertical")),
     row<&GoalOptions::random_goal, true, false>(text_option("goal_rotation", "random", "random|fixed",
                                                             "rotation of the goal, redrawn at each reset")),
-    row<&ObjectOptions::object_damping>(drawable(number_option(
+    row<&ObjectOptions::object_damping>(levelled(number_option(
         "object_damping", 0.1, 0, 100, "angular damping of the object, 1/s; stands for rolling friction"))),
     row<&ObjectOptions::object_scale>(drawable(
         basic(number_option("object_scale", 1, 0.1, 10, "factor on the object's size; its mass stays")))),
@@ -55,7 +55,7 @@ constexpr auto kRows = option_rows<ObjectOptions>(
     row<&ObjectOptions::own_friction>(flag_option(
         "own_friction", false,
         "the friction that the object's surface has, for friction.hand_object and friction.object_ground")),
-    row<&ObjectOptions::ground_friction>(drawable(
+    row<&ObjectOptions::ground_friction>(levelled(
         number_option("friction.object_ground", 1, 0, 10, "friction coefficient of object and ground"))));
 
 Quat draw_start(StartRotation kind, Stream& stream) {

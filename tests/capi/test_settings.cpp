@@ -70,6 +70,13 @@ TEST(Settings, OfEveryTaskReadBack) {
   for (const std::string& task : task_names()) expect_same_again(task.c_str(), nullptr);
 }
 
+// What a level draws it draws again.
+TEST(Settings, OfALevelReadBack) {
+  for (const char* task : {"hand_over_wall", "grasp", "jenga", "reorient"})
+    for (const char* settings : {"level=2", "level=3\nscale.kp=1.1\nscale.mass=0.5..1.5"})
+      expect_same_again(task, settings);
+}
+
 constexpr const char* kHull =
     "object=hull\n"
     "hull=0.0312345678,0,0;-0.0312345678,0,0;0,0.0287654321,0;0,-0.0287654321,0;0,0,0.0423456789;"

@@ -30,15 +30,15 @@ struct ScaleOptions {
 };
 constexpr auto kScales = option_rows<ScaleOptions>(
     row<&ScaleOptions::effort>(
-        drawable(number_option("scale.effort", 1, 0.01, 100, "factor on the effort bounds of all drives"))),
+        levelled(number_option("scale.effort", 1, 0.01, 100, "factor on the effort bounds of all drives"))),
     row<&ScaleOptions::kp>(
-        drawable(number_option("scale.kp", 1, 0, 100, "factor on the stiffness of all drives"))),
+        levelled(number_option("scale.kp", 1, 0, 100, "factor on the stiffness of all drives"))),
     row<&ScaleOptions::kd>(
-        drawable(number_option("scale.kd", 1, 0.01, 100, "factor on the damping of all drives"))),
+        levelled(number_option("scale.kd", 1, 0.01, 100, "factor on the damping of all drives"))),
     row<&ScaleOptions::mass>(
-        drawable(number_option("scale.mass", 1, 0.1, 100, "factor on all link masses and moments"))),
+        levelled(number_option("scale.mass", 1, 0.1, 100, "factor on all link masses and moments"))),
     row<&ScaleOptions::friction>(
-        drawable(number_option("scale.friction", 1, 0, 100, "factor on the dry friction of all joints"))));
+        levelled(number_option("scale.friction", 1, 0, 100, "factor on the dry friction of all joints"))));
 
 const char* field_name(JointField field) {
   return kJointFields[static_cast<int>(field)];
