@@ -30,11 +30,14 @@ extern "C" {
  * hold action for ever. Where nothing is clean the plan that was made before goes on. An agent's
  * rollout (rdm_agent_set_shield) asks for blocks of decisions at once, which costs an eleventh.
  *
- * What it cannot see. A copy knows what the world will draw: where a robot is real, or worlds are
- * drawn, the proof is one for the model. Costs are looked at as the pool counts them, once a
- * control step. Policies that see points cannot be backups.
+ * What it cannot see. An exact copy knows what its world has drawn and will draw: where a robot is
+ * real, the proof is one for the model. With option copies=K each way is tried in K copies, which
+ * draw dynamics (option level, ranges) and noise of their own, and is clean where it is in all of
+ * them: no proof then, but the more agree, the less comes. Costs are looked at as the pool counts
+ * them, once a control step. Policies that see points cannot be backups.
  *
- * Price: for n worlds, n (block + 1 + tries + 1) copies in memory; time is that of the steps that
+ * Price: for n worlds, n (block + 1 + tries + 1) copies in memory, with option copies n K (2 + 1 +
+ * tries); time is that of the steps that
  * copies take (rdm_shield_stats.copied). No heap after creation. One thread at a time. Same seed,
  * same calls: the same bytes, for any threads. */
 typedef struct rdm_shield rdm_shield; /* handle */
@@ -105,8 +108,8 @@ RDM_API rdm_result rdm_shield_add_policy(rdm_shield *shield, const rdm_policy *p
 RDM_API void rdm_shield_destroy(rdm_shield *shield);            /* NULL is fine */
 RDM_API const char *rdm_shield_error(const rdm_shield *shield); /* last failure on this handle; ""
                                                                  * at first */
-/* Option i of shields: block, look, tries, rounds, noise, zero, hold, unproven. RANGE past the
- * end. */
+/* Option i of shields: block, look, tries, rounds, copies, noise, choose, zero, hold, unproven.
+ * RANGE past the end. */
 RDM_API rdm_result rdm_shield_option_at(int32_t i, rdm_option_spec *io);
 /* All options as text [capacity] of lines key=value: given as settings they make a shield of the
  * same options. */

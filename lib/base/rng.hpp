@@ -26,6 +26,7 @@ enum class Purpose : uint32_t {
   kClone = 12,       // what is held back for validation, and shuffling
   kCamera = 13,      // where an episode's cameras stand
   kShield = 14,      // noise of what a shield tries in the place of an action
+  kShieldDraw = 15,  // what a shield's copies draw where it does not know its worlds
 };
 
 class Stream {

@@ -122,6 +122,9 @@ class Pool {
   // this one: what set_state(get_state) does, with the rows of the last step too. Error(kArgument) for a pool
   // that differs, Error(kRange) for a world that is not there. No heap use.
   void copy(int32_t env, const Pool& from, int32_t source);
+  // In the middle of an episode, what a world draws for itself is drawn anew from `stream`: its dynamics, and the
+  // noise to come of what it shows and does.
+  void redraw(int32_t env, Stream& stream);
   // Error(kArgument) for a pool that differs, by the names of the two.
   void need_same(const Pool& from, const char* name, const char* own) const;
   // Of the episode that runs in a world, or has ended there: control steps so far, sums of rewards and of a

@@ -317,6 +317,15 @@ void Pool::Impl::copy_world(int32_t env, const Impl& from, int32_t source) {
   buffers.success[env] = from.buffers.success[source];
 }
 
+void Pool::redraw(int32_t env, Stream& stream) {
+  const FpMode mode;
+  Impl& m = *impl_;
+  Slot& s = m.slots[env];
+  m.task->redraw(*s.world, stream);
+  if (m.disturbance.any()) s.disturbance.name(stream.next(), static_cast<uint32_t>(env));
+  ++s.course;
+}
+
 void Pool::need_same(const Pool& from, const char* name, const char* own) const {
   const Impl &m = *impl_, &f = *from.impl_;
   if (m.info != f.info)

@@ -67,6 +67,8 @@ class Task {
   // (a world that was never reset) and whatever reset, control and judge leave pass.
   virtual void check_state(const void* state) const = 0;
   virtual void reset(World& world, void* state, Stream& stream) const = 0;
+  // Draws anew, in the middle of an episode, what a reset draws of the world's dynamics.
+  virtual void redraw(World&, Stream&) const {}
   // Clipped actions [action_dim] to drive targets (and base wrenches) of the next control step.
   virtual void control(World& world, void* state, const float* action) const = 0;
   // After the control step. `step` counts from 1 within the episode.

@@ -21,9 +21,12 @@ class CopiesTried {
   // Copy i becomes world `source` of `from` and goes; bound [cost_dim]: what an episode's costs may come to,
   // below 0: whatever they like.
   void start(int32_t i, const Pool& from, int32_t source, const double* bound);
+  // It draws anew what its world drew for itself.
+  void redraw(int32_t i, Stream& stream) { pool_->redraw(i, stream); }
   void stop(int32_t i) { going_[i] = 0; }
   void stop_all();
   bool going(int32_t i) const { return going_[i] != 0; }
+  const uint8_t* goers() const { return going_; }  // [count]
   bool any_going() const;
   // The copies that go step by the actions in their rows, `steps` times each unless they end before. Control
   // steps that were taken. With stop_at_cost one that exceeds a bound ends, else its excess is counted on.

@@ -16,7 +16,7 @@ namespace {
 
 constexpr char kMagic[8] = {'R', 'D', 'M', 'S', 'H', 'L', 'D', '1'};
 constexpr uint32_t kVersion = 1;
-constexpr int32_t kMostBlock = 256, kMostLook = 100000, kMostTries = 64, kMostRounds = 64;
+constexpr int32_t kMostBlock = 256, kMostLook = 100000, kMostTries = 64, kMostRounds = 64, kMostCopies = 64;
 constexpr int64_t kMostNumbers = int64_t{1} << 28;  // of an array
 // The last branches: noise about the first decision that is wider each time.
 constexpr int32_t kWide = 4;
@@ -32,6 +32,9 @@ constexpr auto kRows = option_rows<ShieldOptions>(
         integer_option("tries", 8, 1, kMostTries, "branches that are tried together for a world")),
     row<&ShieldOptions::rounds>(
         integer_option("rounds", 8, 1, kMostRounds, "times that so many branches are tried, at most")),
+    row<&ShieldOptions::copies>(basic(integer_option(
+        "copies", 0, 0, kMostCopies,
+        "of worlds that are not known: copies with dynamics of their own that agree; 0: one exact copy"))),
     row<&ShieldOptions::noise>(
         basic(number_option("noise", 0.2, 0, 2, "deviation of a noisy branch's first action"))),
     row<&ShieldOptions::best, false, true>(basic(
@@ -64,6 +67,9 @@ void Shield::read_options(const ShieldConfig& c) {
   for (int32_t i = 0; i < c.num_options; ++i) options_.set(c.options[i], "shield");
   options_.set_lines(c.settings, "shield");
   set_ = kRows.read(options_);
+  if (set_.copies == 0) return;
+  worlds_ = set_.copies;
+  set_.block = 1;  // what is foreseen in one of them does not come in another
 }
 
 Shield::Shield(const ShieldConfig& c) : hooks_(c.hooks), steps_(c.steps) {
@@ -86,14 +92,14 @@ Shield::Shield(const ShieldConfig& c) : hooks_(c.hooks), steps_(c.steps) {
   stride_ = steps_ * pool.repeat();
   const int32_t whole = (pool.task().max_steps() + stride_ - 1) / stride_;
   length_ = set_.look > 0 ? std::min(whole, set_.block + set_.look + 1) : whole;
-  const int64_t branches = int64_t{n_} * set_.tries;
-  if (branches * length_ * dim_ > kMostNumbers || int64_t{n_} * (set_.block + 1) > 65536 || branches > 65536)
+  const int64_t ways = int64_t{n_} * worlds_, branches = ways * set_.tries;
+  if (branches * length_ * dim_ > kMostNumbers || ways * (set_.block + 1) > 65536 || branches > 65536)
     fail(Code::kRange, "shield: %d worlds with blocks of %d, and %d tries of %d decisions, are too many", n_,
          set_.block, set_.tries, length_);
   try {
-    first_.make(pool, n_, c.num_threads, hooks_);
-    tried_.make(pool, n_ * set_.tries, c.num_threads, hooks_);
-    kept_ = make_copies(pool, n_ * (set_.block + 1), c.num_threads, hooks_);
+    first_.make(pool, n_ * worlds_, c.num_threads, hooks_);
+    tried_.make(pool, n_ * set_.tries * worlds_, c.num_threads, hooks_);
+    kept_ = make_copies(pool, n_ * worlds_ * (set_.block + 1), c.num_threads, hooks_);
     Arena measure;
     carve(measure);
     arena_ = Arena(hooks_, measure.used());
@@ -105,7 +111,10 @@ Shield::Shield(const ShieldConfig& c) : hooks_(c.hooks), steps_(c.steps) {
     throw;
   }
   first_.pool().task().hold_action(hold_);
-  for (int32_t i = 0; i < n_; ++i) noise_[i] = Stream(c.seed, static_cast<uint32_t>(i), Purpose::kShield);
+  for (int32_t i = 0; i < n_; ++i) {
+    noise_[i] = Stream(c.seed, static_cast<uint32_t>(i), Purpose::kShield);
+    drawn_[i] = Stream(c.seed, static_cast<uint32_t>(i), Purpose::kShieldDraw);
+  }
   std::fill_n(rows_, n_, ShieldRow{});
 }
 
@@ -139,7 +148,7 @@ void Shield::destroy(Shield* s) {
 }
 
 void Shield::carve(Arena& arena) {
-  const size_t n = sz(n_), dim = sz(dim_), length = sz(length_), branches = n * sz(set_.tries);
+  const size_t n = sz(n_), dim = sz(dim_), length = sz(length_), branches = n * sz(set_.tries) * sz(worlds_);
   first_.carve(arena);
   tried_.carve(arena);
   zero_ = arena.make<float>(dim);
@@ -150,12 +159,14 @@ void Shield::carve(Arena& arena) {
   own_ = arena.make<float>(n * dim);
   refused_ = arena.make<float>(n * dim);
   moved_ = arena.make<uint8_t>(n);
+  went_ = arena.make<uint8_t>(n * sz(worlds_));
   plan_ = arena.make<float>(n * length * dim);
   way_ = arena.make<float>(n * length * dim);
   tail_ = arena.make<float>(n * length * dim);
   branch_ = arena.make<float>(branches * length * dim);
   bound_ = arena.make<double>(n * sz(costs_));
   noise_ = arena.make<Stream>(n);
+  drawn_ = arena.make<Stream>(n);
   foreseen_ = arena.make<Stream>(n);
   offset_ = arena.make<float>(n * dim);
   obs_rows_ = arena.make<float>(branches * sz(obs_));
@@ -207,6 +218,7 @@ bool Shield::follows(const Pool& pool, int32_t env, const float* proposed, bool 
   }
   p.course = pool.course(env);
   p.adopt = 0;
+  if (set_.copies > 0) return false;
   return (foreseen && at < p.block) || same(proposed, plan_ + plan_of(env) + row_of(at), dim_) ||
          (at == p.refused && same(proposed, refused_ + row_of(env), dim_));
 }
@@ -289,7 +301,7 @@ void Shield::inquire(const Pool& pool, const float* proposed, bool unneeded) {
 
 void Shield::run_first(const Pool& pool, const float* proposed) {
   first_.stop_all();
-  std::fill_n(backup_, n_, order_[0]);
+  std::fill_n(backup_, first_.count(), order_[0]);
   for (int32_t x = 0; x < num_asked_; ++x) {
     Inquiry& q = inquiries_[x];
     const int32_t env = q.env;
@@ -299,55 +311,59 @@ void Shield::run_first(const Pool& pool, const float* proposed) {
     double* bound = bound_ + sz(env) * sz(costs_);
     for (int32_t k = 0; k < costs_; ++k)
       bound[k] = budget_[k] < 0 ? -1 : std::max(budget_[k], pool.spent(env, k));
-    first_.start(env, pool, env, bound);
+    for (int32_t i = first_of(env); i < first_of(env + 1); ++i) {
+      first_.start(i, pool, env, bound);
+      if (set_.copies > 0) first_.redraw(i, drawn_[env]);
+    }
     if (foresight_) foresight_->begin(env, &foreseen_[env], offset_ + row_of(env));
   }
   // The way is that of what is proposed, then of the backup; the states before its first decisions are kept.
   const int32_t foreseen = foresight_ ? set_.block : 1;
-  for (int32_t d = 0; set_.look == 0 || d < foreseen + set_.look; ++d) {
-    int32_t rows = 0;
-    for (int32_t x = 0; x < num_asked_; ++x) {
-      const int32_t env = inquiries_[x].env;
-      if (!first_.going(env)) continue;
-      if (d <= set_.block) kept_->copy(kept_of(env, d), first_.pool(), env);
-      list_[rows++] = env;
-    }
-    if (rows == 0) return;
-    if (d == 0) {
-      for (int32_t i = 0; i < rows; ++i)
-        std::copy_n(proposed + row_of(list_[i]), dim_, first_.action(list_[i]));
-    } else if (d < foreseen) {
-      foresee(rows);
-    } else {
+  for (int32_t d = 0; first_.any_going() && (set_.look == 0 || d < foreseen + set_.look); ++d) {
+    for (int32_t i = 0; d <= set_.block && i < first_.count(); ++i)
+      if (first_.going(i)) kept_->copy(kept_of(i, d), first_.pool(), i);
+    if (d == 0)
+      each_going([&](int32_t i) { std::copy_n(proposed + row_of(i / worlds_), dim_, first_.action(i)); });
+    else if (d < foreseen)
+      foresee();
+    else
       back_up(&first_, backup_);
-    }
     for (int32_t x = 0; x < num_asked_; ++x)
-      if (const int32_t env = inquiries_[x].env; first_.going(env))
-        std::copy_n(first_.action(env), dim_, way_ + plan_of(env) + row_of(d));
+      if (const int32_t env = inquiries_[x].env; first_.going(first_of(env)))
+        std::copy_n(first_.action(first_of(env)), dim_, way_ + plan_of(env) + row_of(d));
+    std::copy_n(first_.goers(), first_.count(), went_);
     counts_.copied += first_.step(steps_, true);
-    for (int32_t x = 0; x < num_asked_; ++x) read_fate(&inquiries_[x], d, d < foreseen);
+    for (int32_t x = 0; x < num_asked_; ++x) read_fates(&inquiries_[x], d, d < foreseen);
   }
 }
 
-void Shield::foresee(int32_t rows) {
-  for (int32_t i = 0; i < rows; ++i) std::copy_n(first_.obs(list_[i]), obs_, obs_rows_ + sz(i) * sz(obs_));
+// The next decisions of those who propose; there is one copy of a world then.
+void Shield::foresee() {
+  int32_t rows = 0;
+  each_going([&](int32_t i) {
+    std::copy_n(first_.obs(i), obs_, obs_rows_ + sz(rows) * sz(obs_));
+    list_[rows++] = i;
+  });
   foresight_->act(list_, obs_rows_, rows, foreseen_, offset_, act_rows_);
   for (int32_t i = 0; i < rows; ++i) std::copy_n(act_rows_ + row_of(i), dim_, first_.action(list_[i]));
 }
 
-// Of the first way behind decision d, which the proposer made or the backup.
-void Shield::read_fate(Inquiry* q, int32_t d, bool proposed) {
+void Shield::read_fates(Inquiry* q, int32_t d, bool proposed) {
   using Fate = CopiesTried::Fate;
-  if (q->over) return;
-  ++q->way;
-  q->samples += proposed;
-  const Fate fate = first_.fate(q->env);
-  q->over = fate != Fate::kGoing;
-  if (fate != Fate::kCost && fate != Fate::kLost) return;
-  q->fail = d;
-  q->column = first_.column(q->env);
-  q->cost_in = first_.ended_in(q->env);
-  ++counts_.failed;
+  const int32_t first = first_of(q->env), end = first_of(q->env + 1);
+  if (went_[first]) {
+    ++q->way;
+    q->samples += proposed;
+  }
+  for (int32_t i = first; i < end && q->fail < 0; ++i) {
+    const Fate fate = first_.fate(i);
+    if (!went_[i] || (fate != Fate::kCost && fate != Fate::kLost)) continue;
+    q->fail = d;
+    q->column = first_.column(i);
+    q->cost_in = first_.ended_in(i);
+    ++counts_.failed;
+  }
+  for (int32_t i = first; i < end && q->fail >= 0; ++i) first_.stop(i);
 }
 
 Shield::Branch Shield::branch_of(const Inquiry& q, int32_t number) const {
@@ -378,11 +394,11 @@ void Shield::try_branches(const Pool& pool) {
     for (int32_t x = 0; x < num_asked_; ++x) {
       Inquiry& q = inquiries_[x];
       if (q.fail < 0 || (q.winner >= q.reserve && !set_.best)) continue;
-      for (int32_t i = q.env * set_.tries; i < (q.env + 1) * set_.tries; ++i) {
+      for (int32_t t = 0; t < set_.tries; ++t) {
         const Branch b = branch_of(q, q.next);
         if (b.backup < 0) break;
-        start_branch(q.env, i, b);
-        number_[i] = q.next++;
+        start_branch(q.env, branch_first(q.env, t), b);
+        number_[branch_first(q.env, t)] = q.next++;
         any = true;
       }
     }
@@ -390,25 +406,34 @@ void Shield::try_branches(const Pool& pool) {
     run_branches(true);
     for (int32_t x = 0; x < num_asked_; ++x) {
       Inquiry& q = inquiries_[x];
-      for (int32_t i = q.env * set_.tries; i < (q.env + 1) * set_.tries; ++i)
-        if (lived_[i] > 0) choose(&q, i);
+      for (int32_t t = 0; t < set_.tries; ++t)
+        if (lived_[branch_first(q.env, t)] > 0) choose(&q, branch_first(q.env, t));
     }
   }
 }
 
 void Shield::start_branch(int32_t env, int32_t i, const Branch& b) {
-  tried_.start(i, *kept_, kept_of(env, b.from), bound_ + sz(env) * sz(costs_));
-  backup_[i] = b.backup;
+  for (int32_t c = 0; c < worlds_; ++c) {
+    tried_.start(i + c, *kept_, kept_of(first_of(env) + c, b.from), bound_ + sz(env) * sz(costs_));
+    backup_[i + c] = b.backup;
+  }
   width_[i] = b.noise;
   from_[i] = b.from;
+}
+
+bool Shield::clean(int32_t i) const {
+  using Fate = CopiesTried::Fate;
+  for (int32_t c = i; c < i + worlds_; ++c)
+    if (tried_.fate(c) != Fate::kOver && tried_.fate(c) != Fate::kGoing) return false;
+  return true;
 }
 
 // A branch that is clean becomes the winner where there is none, or only one of the reserve; with choose=best
 // wherever its return is higher.
 void Shield::choose(Inquiry* q, int32_t i) {
-  using Fate = CopiesTried::Fate;
-  if (tried_.fate(i) != Fate::kOver && tried_.fate(i) != Fate::kGoing) return;
-  const double ret = tried_.pool().gained(i);
+  if (!clean(i)) return;
+  double ret = 0;
+  for (int32_t c = i; c < i + worlds_; ++c) ret += tried_.pool().gained(c);
   const bool first = q->winner < 0 || (q->winner < q->reserve && number_[i] >= q->reserve);
   if (!first && !(set_.best && ret > q->ret)) return;
   q->winner = number_[i];
@@ -427,27 +452,39 @@ void Shield::run_branches(bool stop_at_cost) {
   std::fill_n(lived_, tried_.count(), 0);
   for (int32_t h = 0; tried_.any_going() && (set_.look == 0 || h <= set_.look); ++h) {
     back_up(&tried_, backup_);
-    for (int32_t i = 0; i < tried_.count(); ++i) {
-      if (!tried_.going(i)) continue;
-      float* a = tried_.action(i);
-      if (h == 0 && width_[i] > 0) {
-        float* z = act_rows_;
-        noise_[i / set_.tries].normals(z, dim_);
-        for (int32_t j = 0; j < dim_; ++j)
-          a[j] = std::clamp(a[j] + static_cast<float>(width_[i] * set_.noise) * z[j], -1.0f, 1.0f);
-      }
-      std::copy_n(a, dim_, branch_ + plan_of(i) + row_of(h));
+    for (int32_t i = 0; i < tried_.count(); i += worlds_) {
+      if (h == 0 && tried_.going(i) && width_[i] > 0) add_noise(i);
+      if (!tried_.going(i)) continue;  // the first copy's way is the plan
+      std::copy_n(tried_.action(i), dim_, branch_ + plan_of(i) + row_of(h));
       lived_[i] = h + 1;
     }
     counts_.copied += tried_.step(steps_, stop_at_cost);
+    for (int32_t i = 0; worlds_ > 1 && stop_at_cost && i < tried_.count(); i += worlds_)
+      if (!clean(i))
+        for (int32_t c = i; c < i + worlds_; ++c) tried_.stop(c);
+  }
+}
+
+// The same to the actions of all copies of a branch.
+void Shield::add_noise(int32_t i) {
+  float* z = act_rows_;
+  noise_[i / worlds_ / set_.tries].normals(z, dim_);
+  for (int32_t c = i; c < i + worlds_; ++c) {
+    float* a = tried_.action(c);
+    for (int32_t j = 0; j < dim_; ++j)
+      a[j] = std::clamp(a[j] + static_cast<float>(width_[i] * set_.noise) * z[j], -1.0f, 1.0f);
   }
 }
 
 // Whether branch a exceeds budgets by more than b does; what is lost, by most.
 bool Shield::worse(int32_t a, int32_t b) const {
-  const bool lost = tried_.fate(a) == CopiesTried::Fate::kLost;
-  if (lost != (tried_.fate(b) == CopiesTried::Fate::kLost)) return lost;
-  return tried_.excess(b) < tried_.excess(a);
+  double lost = 0, excess = 0;
+  for (int32_t c = 0; c < worlds_; ++c) {
+    lost += tried_.fate(a + c) == CopiesTried::Fate::kLost;
+    lost -= tried_.fate(b + c) == CopiesTried::Fate::kLost;
+    excess += tried_.excess(a + c) - tried_.excess(b + c);
+  }
+  return lost != 0 ? lost > 0 : excess > 0;
 }
 
 // Where nothing was clean and there is no plan: what exceeds the budgets least, if that will do.
@@ -468,7 +505,7 @@ void Shield::try_least(const Pool& pool, bool unneeded) {
            "does in %d control steps. Give a backup that does not, or unproven=least",
            q.env, q.column, Quoted(task_at(pool.task_index()).costs[q.column].name).text, ahead);
     }
-    for (int32_t b = 0; b < num_order_; ++b) start_branch(q.env, q.env * set_.tries + b, {0, order_[b], 0});
+    for (int32_t b = 0; b < num_order_; ++b) start_branch(q.env, branch_first(q.env, b), {0, order_[b], 0});
     any = q.least = true;
   }
   if (!any) return;
@@ -476,9 +513,9 @@ void Shield::try_least(const Pool& pool, bool unneeded) {
   for (int32_t x = 0; x < num_asked_; ++x) {
     Inquiry& q = inquiries_[x];
     if (!q.least) continue;
-    int32_t best = q.env * set_.tries;
-    for (int32_t i = best + 1; i < q.env * set_.tries + num_order_; ++i)
-      if (worse(best, i)) best = i;
+    int32_t best = branch_first(q.env, 0);
+    for (int32_t b = 1; b < num_order_; ++b)
+      if (const int32_t i = branch_first(q.env, b); worse(best, i)) best = i;
     q.winner = 0;
     take(&q, best);
   }
@@ -569,6 +606,7 @@ void Shield::write_state(Writer& out) const {
     out.value(p);
     out.value(rows_[i]);
     out.value(noise_[i]);
+    out.value(drawn_[i]);
     out.bytes(own_ + row_of(i), row_of(1) * sizeof *own_);
     out.bytes(refused_ + row_of(i), row_of(1) * sizeof *refused_);
     out.bytes(plan_ + plan_of(i), row_of(p.length) * sizeof *plan_);
@@ -605,6 +643,7 @@ void Shield::read_state(const void* bytes, size_t size) {
     good &= r.kind >= ShieldKind::kOwn && r.kind <= ShieldKind::kUnproven && r.column >= -1 &&
             r.column < costs_ && r.backup >= -1 && r.backup <= num_own_;
     look.value<Stream>();
+    look.value<Stream>();
     if (!good) break;
     numbers(2 + p.length);
   }
@@ -616,6 +655,7 @@ void Shield::read_state(const void* bytes, size_t size) {
     plans_[i].adopt = 1;
     rows_[i] = in.value<ShieldRow>();
     noise_[i] = in.value<Stream>();
+    drawn_[i] = in.value<Stream>();
     in.bytes(own_ + row_of(i), row_of(1) * sizeof *own_);
     in.bytes(refused_ + row_of(i), row_of(1) * sizeof *refused_);
     in.bytes(plan_ + plan_of(i), row_of(plans_[i].length) * sizeof *plan_);

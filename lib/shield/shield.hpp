@@ -17,6 +17,10 @@
 //             unproven=least the way that exceeds the budgets least
 // Asking for 16 decisions at once takes an eleventh of the copied steps that asking for each of them does.
 //
+// Worlds that are not known, as a robot or one that draws its dynamics: with option copies=K each way is tried in K
+// copies, which draw dynamics and noise of their own, and is clean where it is in all of them; every decision is
+// asked about alone, as no plan of actions holds for certain. Then there is no proof, but an estimate.
+//
 // A budget is of an episode. What was spent beyond it before the shield could help stays spent: the bound is
 // then what was spent.
 #pragma once
@@ -85,7 +89,7 @@ struct ShieldCounts {
 };
 
 struct ShieldOptions {
-  int32_t block, look, tries, rounds;
+  int32_t block, look, tries, rounds, copies;
   double noise;
   bool best, zero, hold, least;
 };
@@ -160,7 +164,7 @@ class Shield {
     int32_t winner;           // -1: none so far
     int32_t from, backup;     // of the winner
     double ret;               // and its episode's return
-    bool over, least;         // the first way has ended; the winner exceeds budgets
+    bool least;               // the winner exceeds budgets
   };
   struct Branch {
     int32_t from = 0, backup = -1;  // -1: there are no more
@@ -173,7 +177,7 @@ class Shield {
   uint64_t fingerprint() const;
   size_t row_of(int32_t i) const { return static_cast<size_t>(i) * static_cast<size_t>(dim_); }
   size_t plan_of(int32_t i) const { return row_of(i) * static_cast<size_t>(length_); }
-  int32_t kept_of(int32_t env, int32_t d) const { return env * (set_.block + 1) + d; }
+  int32_t kept_of(int32_t copy, int32_t d) const { return copy * (set_.block + 1) + d; }
 
   // The decision of its plan that a world is at; -1: the plan is none of its episode as it is.
   int32_t place(const Pool& pool, int32_t env) const;
@@ -182,13 +186,22 @@ class Shield {
   void order_backups(Foresight* foresight);
   void inquire(const Pool& pool, const float* proposed, bool unneeded);
   void run_first(const Pool& pool, const float* proposed);
-  // Of the worlds list_ [rows], what will be proposed.
-  void foresee(int32_t rows);
-  void read_fate(Inquiry* q, int32_t d, bool proposed);
+  void foresee();
+  // Of the copies of its first way that went into decision d, which the proposer made or the backup.
+  void read_fates(Inquiry* q, int32_t d, bool proposed);
+  int32_t first_of(int32_t env) const { return env * worlds_; }  // of its copies
+  int32_t branch_first(int32_t env, int32_t x) const { return (env * set_.tries + x) * worlds_; }
+  bool clean(int32_t i) const;  // of a branch, by the first of its copies
   Branch branch_of(const Inquiry& q, int32_t number) const;
   void try_branches(const Pool& pool);
   void start_branch(int32_t env, int32_t i, const Branch& b);
   void run_branches(bool stop_at_cost);
+  void add_noise(int32_t i);
+  template <class F>
+  void each_going(F&& f) {  // f(i) for the first ways that go
+    for (int32_t i = 0; i < first_.count(); ++i)
+      if (first_.going(i)) f(i);
+  }
   void choose(Inquiry* q, int32_t i);
   void take(Inquiry* q, int32_t i);
   bool worse(int32_t a, int32_t b) const;
@@ -209,8 +222,9 @@ class Shield {
   int32_t n_ = 0, dim_ = 0, obs_ = 0, costs_ = 0, steps_ = 1, stride_ = 1, length_ = 0;
   double budget_[kMaxTaskCosts] = {};
   ShieldCounts counts_;
-  CopiesTried first_, tried_;  // [n] the first ways; [n][tries] branches
-  Pool* kept_ = nullptr;       // [n][block + 1] states before each decision of a first way
+  int32_t worlds_ = 1;         // copies of a world in which each way is tried
+  CopiesTried first_, tried_;  // [n][worlds] the first ways; [n][tries][worlds] branches
+  Pool* kept_ = nullptr;       // [n][worlds][block + 1] states before each decision of a first way
 
   Arena arena_;
   float *zero_ = nullptr, *hold_ = nullptr;  // [dim]
@@ -218,12 +232,14 @@ class Shield {
   ShieldRow* rows_ = nullptr;                // [n]
   Inquiry* inquiries_ = nullptr;             // [n], of which num_asked_, by rising env
   int32_t num_asked_ = 0;
-  float *own_ = nullptr, *refused_ = nullptr;                 // [n][dim]
-  uint8_t* moved_ = nullptr;                                  // [n]
+  float *own_ = nullptr, *refused_ = nullptr;  // [n][dim]
+  uint8_t* moved_ = nullptr;                   // [n]
+  uint8_t* went_ = nullptr;                    // [n worlds] of the first ways, before the last step
   float *plan_ = nullptr, *way_ = nullptr, *tail_ = nullptr;  // [n][length][dim]
   double* bound_ = nullptr;                                   // [n][costs]
-  Stream *noise_ = nullptr, *foreseen_ = nullptr;             // [n] of branches; of what a foresight draws
-  float* offset_ = nullptr;                                   // [n][dim] likewise
+  // [n] of branches, of copies that draw for themselves, and of what a foresight draws
+  Stream *noise_ = nullptr, *drawn_ = nullptr, *foreseen_ = nullptr;
+  float* offset_ = nullptr;  // [n][dim] likewise
   // Branches, [n tries]: their decisions [length][dim], backups, first decisions, numbers, how many decisions
   // they went on for, noise of the first one.
   float* branch_ = nullptr;

@@ -115,6 +115,7 @@ class HandControl {
   const float* action(const void* bytes) const;
   void check_state(const void* bytes) const;  // of a saved state: Error(kFormat)
 
+  void redraw(World& world, Stream& stream) const { draws_->apply(world, stream); }
   void reset(double noise, bool literal, World& world, const HandControlState& state, Stream& stream) const;
   void control(World& world, const HandControlState& state, const float* action) const;
   // How far the base that went furthest is from its start, m; 0 for fixed ones.

@@ -20,6 +20,7 @@ class HandTask : public Task {
   void control(World& world, void* state, const float* action) const override {
     hands_.control(world, control_state(state), action);
   }
+  void redraw(World& world, Stream& stream) const override { hands_.redraw(world, stream); }
   void check_state(const void* state) const final {
     check_own_state(state);
     hands_.check_state(static_cast<const char*>(state) + own_bytes_);

@@ -222,6 +222,26 @@ TEST(Shields, NameTheWorldInWhichNothingIsClean) {
   EXPECT_EQ(stats_of(shield).unproven, 3);
 }
 
+// Worlds that draw their dynamics: an exact copy knows them, so nothing comes; copies that draw for themselves do not, and the
+// more of them agree, the less comes.
+TEST(Shields, KnowDrawnWorldsOnlyByExactCopies) {
+  const Policy policy = shipped("hand_over_wall");
+  const auto violations = [&](const char* settings) {
+    const Pool pool = pool_of("hand_over_wall", "action_repeat=2\nlevel=3", 16);
+    rdm_shield_config c = config_of(pool, settings);
+    c.policy = policy.get();
+    const Shield shield = settings ? shield_of(c) : Shield();
+    play(pool, shield, 74, policy.get(), 16);
+    return violations_of(pool);
+  };
+  EXPECT_EQ(violations("unproven=least"), 0);
+  const int64_t bare = violations(nullptr), one = violations("unproven=least\ncopies=1"),
+                four = violations("unproven=least\ncopies=4");
+  EXPECT_GT(one, 0) << "they know what they should not";
+  EXPECT_LT(one, bare);
+  EXPECT_LT(four, one);
+}
+
 std::vector<unsigned char> course_of(int32_t threads, bool resumed) {
   const Pool pool = pool_of("reorient", "action_repeat=3", 7, threads);
   const Policy backup = shipped("reorient");

@@ -3899,8 +3899,8 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_pool_get_settings": Function(
         c_int32, {"p": c_void_p, "text": c_void_p, "capacity": c_size_t, "size": c_void_p},
         {}, False,
-        """All options as text [capacity] of lines key=value: given as settings they make the same pool
-        again.
+        """All options as text [capacity] of lines key=value, but with option level those that it draws:
+        given as settings they make the same pool again.
         """),
     "rdm_pool_get_buffers": Function(
         c_int32, {"p": c_void_p, "io": POINTER(rdm_buffers)},
@@ -4601,8 +4601,8 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_shield_option_at": Function(
         c_int32, {"i": c_int32, "io": POINTER(rdm_option_spec)},
         {}, True,
-        """Option i of shields: block, look, tries, rounds, noise, zero, hold, unproven. RANGE past the
-        end.
+        """Option i of shields: block, look, tries, rounds, copies, noise, choose, zero, hold, unproven.
+        RANGE past the end.
         """),
     "rdm_shield_get_settings": Function(
         c_int32, {"shield": c_void_p, "text": c_void_p, "capacity": c_size_t, "size": c_void_p},
