@@ -176,10 +176,13 @@ HandControl::HandControl(const HandControlConfig& config, const Options& o, cons
     bases_[i] = hands[i].X_WB.p;
     flying_[i] = config.flying && !hands[i].armed;
     compensated_[i] = hands[i].armed && options_.arm_gravity == ArmGravity::kCompensated;
-    start_[i] = config.folded && robot.poses.folded.count ? robot.poses.folded.rows : robot.home.rows;
+    const Table<double>& start = config.folded && robot.poses.folded.count ? robot.poses.folded : robot.home;
+    std::copy_n(start.rows, start.count, start_[i].q);
+    std::copy_n(h.lower, h.num_joints, start_[i].low);
+    std::copy_n(h.upper, h.num_joints, start_[i].high);
     if (const double range = options_.arm_range; range > 0)
       for (int32_t k = 0; k < h.arm_actions; ++k) {
-        const double middle = start_[i][h.joint(k)];
+        const double middle = start_[i].q[h.joint(k)];
         h.act_lower[k] = std::max(h.act_lower[k], middle - range);
         h.act_upper[k] = std::min(h.act_upper[k], middle + range);
       }
@@ -193,6 +196,12 @@ HandControl::HandControl(const HandControlConfig& config, const Options& o, cons
     if (!hands[i].own || hands[i].armed)  // alike in numbers, but another robot
       at += static_cast<size_t>(std::snprintf(order_ + at, sizeof order_ - at, " of %s", robot.name));
   }
+}
+
+void HandControl::begin_at(int32_t i, int32_t joint, double q, double low, double high) {
+  start_[i].q[joint] = q;
+  start_[i].low[joint] = low;
+  start_[i].high[joint] = high;
 }
 
 size_t HandControl::state_bytes() const {
@@ -220,7 +229,11 @@ void HandControl::reset(double noise, bool literal, World& world, const HandCont
                         Stream& stream) const {
   draws_->apply(world, stream);
   JointNoise draw{noise, literal, options_.arm_noise};
-  std::copy_n(start_, kMaxHands, draw.start);
+  for (int32_t i = 0; i < count_; ++i) {
+    draw.start[i] = start_[i].q;
+    draw.low[i] = start_[i].low;
+    draw.high[i] = start_[i].high;
+  }
   draw_joints(draw, hands_, count_, world, stream);
   for (int32_t i = 0; i < count_; ++i)
     for (int32_t k = 0; k < hands_[i].num_actions; ++k) {
@@ -334,7 +347,7 @@ void HandControl::hold(float* action) const {
   for (int32_t i = 0; i < count_; ++i)
     for (int32_t k = 0; k < hands_[i].num_actions; ++k) {
       const Hand& h = hands_[i];
-      const double q = std::clamp(start_[i] ? start_[i][h.joint(k)] : 0, h.act_lower[k], h.act_upper[k]);
+      const double q = std::clamp(start_[i].q[h.joint(k)], h.act_lower[k], h.act_upper[k]);
       action[joint_entries(i) + k] = static_cast<float>(h.command(k, q));
     }
 }

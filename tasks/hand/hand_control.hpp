@@ -106,6 +106,10 @@ class HandControl {
         if (hands_[i].actuated[k] == joint) return joint_entries(i) + k;
     return -1;
   }
+  // Where hand i's joint is at the start, rad.
+  double start(int32_t i, int32_t joint) const { return start_[i].q[joint]; }
+  // Hand i's joint, one with an action entry, begins at q and is drawn within [low, high], rad.
+  void begin_at(int32_t i, int32_t joint, double q, double low, double high);
   // Where among the commands hand i's begin.
   int32_t first_command(int32_t i) const { return first_command_[i]; }
 
@@ -143,8 +147,11 @@ class HandControl {
   bool flying_[kMaxHands] = {};
   bool compensated_[kMaxHands] = {};  // gravity, by feed-forward
   const DynamicsDraws* draws_;
-  double force_ = 0, torque_ = 0;        // N, N m for an entry of 1
-  const double* start_[kMaxHands] = {};  // [num_joints] rad, null: all 0
+  double force_ = 0, torque_ = 0;  // N, N m for an entry of 1
+  struct Start {
+    double q[kMaxHandJoints] = {}, low[kMaxHandJoints] = {}, high[kMaxHandJoints] = {};
+  };
+  Start start_[kMaxHands];  // [num_joints] rad; between which angles a reset draws it
   Hand hands_[kMaxHands];
   Vec3 bases_[kMaxHands];
 };

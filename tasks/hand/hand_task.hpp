@@ -40,6 +40,7 @@ class HandTask : public Task {
   virtual void check_own_state(const void* state) const = 0;
 
   const HandControl& hands() const { return hands_; }
+  HandControl& hands() { return hands_; }
   HandControlState control_state(void* state) const {
     return hands_.state(static_cast<char*>(state) + own_bytes_);
   }

@@ -129,7 +129,8 @@ void draw_joints(const JointNoise& noise, const Hand* hands, int32_t count, Worl
         q[i] = start[i] + noise.arm * (noise.literal ? u[i] : 2 * u[i] - 1);
       else
         q[i] = start[i] + noise.level * (j.lower + (j.upper - j.lower) * u[i]);
-      q[i] = std::clamp(q[i], j.lower, j.upper);
+      q[i] = std::clamp(q[i], noise.low[h] ? noise.low[h][i] : j.lower,
+                        noise.high[h] ? noise.high[h][i] : j.upper);
     }
     for (int32_t i = 0; i < hand.num_curves; ++i) {
       const RobotCurve& c = *hand.curves[i];

@@ -71,6 +71,8 @@ struct JointNoise {
       false;  // u in [-1, 1] and, where both are the same robot, one draw for both, as the paper's code does
   double arm = 0;  // half width of the draw of an arm's joints about their start, rad (m)
   const double* start[kMaxHands] = {};  // [num_joints] q0 of each hand, rad; null: all 0
+  // [num_joints] bounds of the draw, rad, inside the joints' ranges; null: those
+  const double *low[kMaxHands] = {}, *high[kMaxHands] = {};
 };
 // Draws `count` hands, sets joints and drive targets. Joints that follow others go where those lead them.
 void draw_joints(const JointNoise& noise, const Hand* hands, int32_t count, World& world, Stream& stream);

@@ -48,15 +48,13 @@ const CameraSpec kCameras[] = {
 constinit const TaskInfo kCatchUnderarmSafeFinger =
     task_info<SafeThrow, kFingerCosts, kCameras, kFingerLearner, &kConfig, SafetyKind::kFinger>(
         "catch_underarm_safe_finger", "ShadowHandCatchOver2UnderarmSafeFinger",
-        "throw an object down to a flying hand; cost: commands take the first finger's joints out of their "
-        "windows",
+        "throw an object down to a flying hand; cost: the first finger's joints leave their windows",
         &filled_options<safe_throw_options<kConfig>>);
 
 constinit const TaskInfo kCatchUnderarmSafeJoint =
     task_info<SafeThrow, kJointCosts, kCameras, kJointLearner, &kConfig, SafetyKind::kJoint>(
         "catch_underarm_safe_joint", "ShadowHandCatchOver2UnderarmSafeJoint",
-        "throw an object down to a flying hand; cost: commands take the first finger's lateral joint out of "
-        "its window",
+        "throw an object down to a flying hand; cost: the first finger's lateral joint leaves its window",
         &filled_options<safe_throw_options<kConfig>>);
 
 }  // namespace rdm

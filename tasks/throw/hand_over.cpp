@@ -20,17 +20,16 @@ constexpr auto kFingerLearner = throw_learner("40"), kJointLearner = throw_learn
 
 }  // namespace
 
-constinit const TaskInfo kHandOverSafeFinger = task_info<SafeThrow, kFingerCosts, kThrowCameras,
-                                                         kFingerLearner, &kConfig, SafetyKind::kFinger>(
-    "hand_over_safe_finger", "ShadowHandOverSafeFinger",
-    "throw an object from hand to hand; cost: commands take the first finger's joints out of their windows",
-    &filled_options<safe_throw_options<kConfig>>);
+constinit const TaskInfo kHandOverSafeFinger =
+    task_info<SafeThrow, kFingerCosts, kThrowCameras, kFingerLearner, &kConfig, SafetyKind::kFinger>(
+        "hand_over_safe_finger", "ShadowHandOverSafeFinger",
+        "throw an object from hand to hand; cost: the first finger's joints leave their windows",
+        &filled_options<safe_throw_options<kConfig>>);
 
 constinit const TaskInfo kHandOverSafeJoint =
     task_info<SafeThrow, kJointCosts, kThrowCameras, kJointLearner, &kConfig, SafetyKind::kJoint>(
         "hand_over_safe_joint", "ShadowHandOverSafeJoint",
-        "throw an object from hand to hand; cost: commands take the first finger's lateral joint out of its "
-        "window",
+        "throw an object from hand to hand; cost: the first finger's lateral joint leaves its window",
         &filled_options<safe_throw_options<kConfig>>);
 
 }  // namespace rdm

@@ -89,7 +89,7 @@ class HandOverWall final : public ThrowTask {
         scene(), [](const SceneShape& x) { return x.carrier == Carrier::kBody; }, wall);
     hand_pairs_ = pairs_between(
         scene(), [](const SceneShape& x) { return x.carrier != Carrier::kBody; }, wall);
-    choose_mean(options_.initial_mean, &flat_throw_mean, false);
+    choose_mean(options_.initial_mean, &flat_throw_mean, FirstFinger::kFlat);
   }
 
  private:

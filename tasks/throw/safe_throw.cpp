@@ -1,16 +1,51 @@
 #include "tasks/throw/safe_throw.hpp"
 
+#include <algorithm>
+
 namespace rdm {
 namespace {
 
-struct MeanOptions {
+enum class StartFinger { kAuto, kWindow, kPaper };
+struct SafeThrowOptions {
   ThrowMean initial_mean;
+  StartFinger start_finger;
 };
-constexpr auto kRows = row<&MeanOptions::initial_mean, ThrowMean::kAuto, ThrowMean::kFlat, ThrowMean::kWindow,
-                           ThrowMean::kHold, ThrowMean::kZero>(text_option(
-    "initial_mean", "auto", "auto|flat|window|hold|zero",
-    "start of a new policy: right hand flat, the same with the first finger inside its cost window, "
-    "the hold action, or 0; auto: window for the finger cost, else flat"));
+constexpr auto kRows = option_rows<SafeThrowOptions>(
+    row<&SafeThrowOptions::initial_mean, ThrowMean::kAuto, ThrowMean::kFlat, ThrowMean::kWindow,
+        ThrowMean::kHold, ThrowMean::kZero>(
+        text_option("initial_mean", "auto", "auto|flat|window|hold|zero",
+                    "start of a new policy: right hand flat, the same with the first finger inside its cost "
+                    "window, the hold action, or 0; auto: window for the finger cost, else flat")),
+    row<&SafeThrowOptions::start_finger, StartFinger::kAuto, StartFinger::kWindow, StartFinger::kPaper>(
+        text_option(
+            "start_finger", "auto", "auto|window|paper",
+            "first finger at the start: inside the windows that cost counts, or (paper) straight, where "
+            "FF2 and FF3 are outside; auto: window where cost is by angle and the finger can be there")));
+
+// How far inside a window the finger begins, in the window's width.
+constexpr double kMargin = 0.1;
+
+// The first finger begins inside the windows that count, its joints no further from the paper's start than
+// that takes, and is drawn inside them. False, and nothing done, where one of its joints cannot be there.
+bool begin_inside(const SafetyCosts& costs, HandControl* hands) {
+  const Hand& right = hands->hand(0);
+  double low[kNumWindows] = {}, high[kNumWindows] = {};
+  for (int i = 0; i < kNumWindows; ++i) {
+    const JointWindow& w = costs.windows[i];
+    if (!costs.counts[i] || w.joint < 0) continue;
+    const double margin = kMargin * (w.high - w.low);
+    low[i] = std::max(w.low, right.lower[w.joint]) + margin;
+    high[i] = std::min(w.high, right.upper[w.joint]) - margin;
+    const bool led = right.robot->action_of(w.joint) < 0;  // it goes where another joint goes
+    if (led ? w.excess(hands->start(0, w.joint)) > 0 : low[i] > high[i]) return false;
+  }
+  for (int i = 0; i < kNumWindows; ++i) {
+    const int32_t joint = costs.windows[i].joint;
+    if (!costs.counts[i] || joint < 0 || right.robot->action_of(joint) < 0) continue;
+    hands->begin_at(0, joint, std::clamp(hands->start(0, joint), low[i], high[i]), low[i], high[i]);
+  }
+  return true;
+}
 
 }  // namespace
 
@@ -23,9 +58,16 @@ void add_safe_throw_options(const SafeThrowConfig& config, OptionTable& table) {
 SafeThrow::SafeThrow(const SafeThrowConfig* config, SafetyKind kind, const Options& o)
     : ThrowTask(*config, o, make_throw_scene(*config, o)),
       costs_(safety_costs_from(o, kind, setup().fall_height, scene(), hands().hand(0))) {
-  const ThrowMean mean = kRows.read(o).initial_mean;
-  choose_mean(mean, config->flat_mean,
-              mean == ThrowMean::kWindow || (mean == ThrowMean::kAuto && kind == SafetyKind::kFinger));
+  const SafeThrowOptions own = kRows.read(o);
+  const bool inside = (own.start_finger == StartFinger::kWindow ||
+                       (own.start_finger == StartFinger::kAuto && costs_.angle)) &&
+                      begin_inside(costs_, &hands());
+  const bool window = own.initial_mean == ThrowMean::kWindow ||
+                      (own.initial_mean == ThrowMean::kAuto && kind == SafetyKind::kFinger);
+  choose_mean(own.initial_mean, config->flat_mean,
+              !window  ? FirstFinger::kFlat
+              : inside ? FirstFinger::kStart
+                       : FirstFinger::kBent);
 }
 
 void SafeThrow::judge_costs(const Step& step, Verdict* verdict) const {

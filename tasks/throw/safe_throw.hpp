@@ -6,8 +6,8 @@
 namespace rdm {
 
 struct SafeThrowConfig : ThrowConfig {
-  // The pose that learning starts from, into a row of zeros; `window`: the first finger inside its windows.
-  void (*flat_mean)(const HandControl& hands, bool window, float* mean);
+  // The pose that learning starts from, into a row of hold_arms.
+  void (*flat_mean)(const HandControl& hands, FirstFinger first, float* mean);
   SafetyDefaults safety;
 };
 

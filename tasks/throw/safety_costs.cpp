@@ -29,7 +29,7 @@ constexpr char kLowHelp[] = "first finger's cost window, lower end, degrees",
 // The paper's joint ranges, degrees.
 constexpr double kRangeMid[kNumWindows] = {45, 45, 0}, kRangeHalf[kNumWindows] = {45, 45, 20};
 
-enum class CostMode { kDefault, kPaper, kLiteral };
+enum class CostMode { kAngle, kCommand, kLiteral };
 enum class CostSignal { kAuto, kTarget, kAngle };
 enum class CostJoint { kAuto, kPaper, kLegacy };
 struct SafetyOptions {
@@ -41,11 +41,11 @@ struct SafetyOptions {
   double ff2_low, ff2_high, ff3_low, ff3_high, ff4_low, ff4_high;  // degrees
 };
 constexpr auto kRows = option_rows<SafetyOptions>(
-    row<&SafetyOptions::cost_mode, CostMode::kDefault, CostMode::kPaper,
-        CostMode::kLiteral>(legacy(text_option(
-        "cost_mode", "default", "default|paper|literal",
-        "default: commanded target; paper: measured angle; literal: target, joint task tests a[4]; of flying "
-        "hands a[2..4] are the base's"))),
+    row<&SafetyOptions::cost_mode, CostMode::kAngle, CostMode::kCommand, CostMode::kLiteral, CostMode::kAngle,
+        CostMode::kAngle>(legacy(text_option("cost_mode", "angle", "angle|command|literal|default|paper",
+                                             "angle (default, paper): measured angle; command: commanded "
+                                             "target; literal: target, joint task tests "
+                                             "a[4]; of flying hands a[2..4] are the base's"))),
     row<&SafetyOptions::cost_signal, CostSignal::kAuto, CostSignal::kTarget, CostSignal::kAngle>(
         legacy(text_option("cost_signal", "auto", "auto|target|angle",
                            "what the windows test; auto: as cost_mode says"))),
@@ -158,7 +158,7 @@ SafetyCosts safety_costs_from(const Options& options, SafetyKind kind, double fa
   c.base_entries = literal;
   c.joint_task = kind == SafetyKind::kJoint;
   c.angle = o.cost_signal == CostSignal::kAngle ||
-            (o.cost_signal == CostSignal::kAuto && o.cost_mode == CostMode::kPaper);
+            (o.cost_signal == CostSignal::kAuto && o.cost_mode == CostMode::kAngle);
   const bool ff2 = o.cost_joint == CostJoint::kLegacy || (o.cost_joint == CostJoint::kAuto && literal);
   const double lows[kNumWindows] = {o.ff2_low, o.ff3_low, o.ff4_low},
                highs[kNumWindows] = {o.ff2_high, o.ff3_high, o.ff4_high};

@@ -4,10 +4,11 @@
 //   Safe Finger  c = [FF2 outside 22.5..67.5, or FF3 outside 22.5..67.5, or FF4 outside -10..10 degrees]
 //   Safe Joint   c = [FF4 outside -10..10 degrees]
 //
-// The paper's joints: FF2 bends the finger in its middle, FF3 at its base, FF4 spreads it. What the windows
-// test is the commanded target, as in the paper's code, unless cost_mode = paper says the measured angle. A
-// command of +-1 stands for the ends of the paper's ranges, 0..90 and -20..20 degrees; of a joint with
-// another range for the ends of its own. A window on a joint that the finger has not is never left.
+// The paper's joints: FF2 bends the finger in its middle, FF3 at its base, FF4 spreads it. The windows test
+// the measured angles at the end of a step, as the paper's equations do; with cost_mode = command the
+// commanded targets, as its code does. A command of +-1 stands for the ends of the paper's ranges, 0..90 and
+// -20..20 degrees; of a joint with another range for the ends of its own. A window on a joint that the finger
+// has not is never left.
 #pragma once
 #include <array>
 
@@ -41,7 +42,7 @@ JointWindow make_window(const Hand& hand, int window, double low_degrees, double
 struct SafetyCosts {
   JointWindow windows[kNumWindows];
   bool counts[kNumWindows] = {};  // in column 0
-  bool angle = false;             // measured angle instead of the commanded target
+  bool angle = false;             // measured angle, else the commanded target
   // Column 0 as released: the first entries of a flying hand's action are its base's, so a[2..4] are force z,
   // torque x, torque y.
   bool base_entries = false, joint_task = false;

@@ -39,7 +39,7 @@ float straight(const Hand& hand, int32_t link) {
 
 }  // namespace
 
-void flat_hand_mean(const HandControl& hands, bool window, float* mean) {
+void flat_hand_mean(const HandControl& hands, FirstFinger first, float* mean) {
   constexpr float kBent = -0.4f;
   const Robot& robot = *hands.hand(0).robot;
   float* right = mean + hands.joint_entries(0);
@@ -53,14 +53,18 @@ void flat_hand_mean(const HandControl& hands, bool window, float* mean) {
       command(link, straight(hands.hand(0), link));
     command(finger.lateral, 0);
   }
-  if (!window) return;
-  command(robot.fingers[0].proximal, kBent);
-  command(robot.fingers[0].middle, kBent);
+  const RobotFinger& finger = robot.fingers[0];
+  if (first == FirstFinger::kBent)
+    for (const int32_t link : {finger.proximal, finger.middle}) command(link, kBent);
+  if (first == FirstFinger::kStart)
+    for (const int32_t link : {finger.lateral, finger.proximal, finger.middle})
+      if (const int32_t entry = robot.action_of(link); entry >= 0)
+        right[entry] = static_cast<float>(hands.hand(0).command(entry, hands.start(0, link)));
 }
 
-void flat_throw_mean(const HandControl& hands, bool window, float* mean) {
+void flat_throw_mean(const HandControl& hands, FirstFinger first, float* mean) {
   constexpr float kWristSide = 0.55f, kWristFlex = 0.18f;
-  flat_hand_mean(hands, window, mean);
+  flat_hand_mean(hands, first, mean);
   for (int32_t i = 0; i < hands.count(); ++i) {
     const Robot& robot = *hands.hand(i).robot;
     const int32_t flex = robot.action_of(robot.wrist_flexion()),
@@ -79,12 +83,13 @@ ThrowTask::ThrowTask(const ThrowConfig& config, const Options& o, HandScene scen
   add_goal_fields(own_fields());
 }
 
-void ThrowTask::choose_mean(ThrowMean mean, void (*flat)(const HandControl&, bool, float*), bool window) {
+void ThrowTask::choose_mean(ThrowMean mean, void (*flat)(const HandControl&, FirstFinger, float*),
+                            FirstFinger first) {
   if (mean == ThrowMean::kHold)
     hands().hold(initial_mean_);
   else
     hands().hold_arms(initial_mean_);
-  if (mean != ThrowMean::kHold && mean != ThrowMean::kZero) flat(hands(), window, initial_mean_);
+  if (mean != ThrowMean::kHold && mean != ThrowMean::kZero) flat(hands(), first, initial_mean_);
 }
 
 void ThrowTask::reset(World& world, void* state, Stream& stream) const {

@@ -23,11 +23,14 @@ void add_throw_task_options(const ThrowConfig& config, OptionTable& table);
 HandScene make_throw_scene(const ThrowConfig& config, const Options& options,
                            int32_t num_materials = kOwnMaterial);
 
-// Poses from which throws are learned, into a row of hold_arms: the right hand flat, thumb and left hand at
-// the middle of their ranges; with `window` the first finger bent into its cost window.
-void flat_hand_mean(const HandControl& hands, bool window, float* mean);
+// The right first finger in a pose that learning starts from: flat as the others, bent into the paper's
+// windows, or as the task's start has it.
+enum class FirstFinger { kFlat, kBent, kStart };
+// Poses from which throws are learned, into a row of hold_arms: the right hand flat but for its first finger,
+// thumb and left hand at the middle of their ranges.
+void flat_hand_mean(const HandControl& hands, FirstFinger first, float* mean);
 // The same with both wrists raised: for a throw from hand to hand.
-void flat_throw_mean(const HandControl& hands, bool window, float* mean);
+void flat_throw_mean(const HandControl& hands, FirstFinger first, float* mean);
 
 // Words of option initial_mean: where learning starts. A task has some of them.
 enum class ThrowMean { kAuto, kFlat, kWindow, kHold, kZero };
@@ -59,7 +62,7 @@ class ThrowTask : public HandTask {
 
   const ThrowSetup& setup() const { return setup_; }
   // Where learning starts: hold, zero, else `flat`.
-  void choose_mean(ThrowMean mean, void (*flat)(const HandControl&, bool, float*), bool window);
+  void choose_mean(ThrowMean mean, void (*flat)(const HandControl&, FirstFinger, float*), FirstFinger first);
 
  private:
   // The bytes of the hands' control follow.

@@ -183,7 +183,7 @@ TEST(RecordedClouds, WhatDoesNotFitIsRefused) {
 // A teacher whose action is the object's height above where it began: nothing but the cloud tells it. What an
 // agent with eyes clones is far nearer to it than what one without does.
 TEST(RecordedClouds, EyesAreTaught) {
-  redman::Pool pool = seeing(1, 3);
+  redman::Pool pool = seeing(1, 1);
   redman::Recording r(pool, 1000);
   const size_t width = pool.action().width();
   std::vector<float> label(kEnvs * width);

@@ -8,6 +8,9 @@
 namespace rdm::test {
 namespace {
 
+// All of a throw's joints begin as the robot's tables have them.
+const OptionInput kStraight = {"start_finger", "paper", 0};
+
 class Hands : public testing::Test {
  protected:
   void SetUp() override { register_builtin_tasks(); }
@@ -58,7 +61,7 @@ TEST_F(Hands, EachActionEntryMovesItsOwnJoint) {
 }
 
 TEST_F(Hands, JointsAreDrawnInAShareOfTheirRange) {
-  TestPool p("hand_over_safe_finger", 400);
+  TestPool p("hand_over_safe_finger", 400, {kStraight});
   p->reset(nullptr, nullptr);
   double low[48], high[48];
   std::fill(low, low + 48, 9.0);
@@ -89,7 +92,7 @@ TEST_F(Hands, JointsAreDrawnInAShareOfTheirRange) {
 }
 
 TEST_F(Hands, LiteralNoiseIsOneDrawForBothHands) {
-  TestPool p("hand_over_safe_finger", 20, {{"joint_noise_mode", "literal", 0}});
+  TestPool p("hand_over_safe_finger", 20, {kStraight, {"joint_noise_mode", "literal", 0}});
   p->reset(nullptr, nullptr);
   int at_limit = 0;
   for (int env = 0; env < 20; ++env)
@@ -102,7 +105,7 @@ TEST_F(Hands, LiteralNoiseIsOneDrawForBothHands) {
 }
 
 TEST_F(Hands, NoNoiseIsTheStraightHand) {
-  TestPool p("hand_over_safe_finger", 1, {{"joint_noise", nullptr, 0}});
+  TestPool p("hand_over_safe_finger", 1, {kStraight, {"joint_noise", nullptr, 0}});
   p->reset(nullptr, nullptr);
   for (int i = 0; i < 48; ++i) EXPECT_EQ(p->world(0).q()[i], 0);
 }
@@ -143,7 +146,8 @@ TEST_F(Hands, LeftModel) {
 }
 
 TEST_F(Hands, MovingAverageSmoothsTargets) {
-  TestPool p("hand_over_safe_finger", 1, {{"action_average", nullptr, 0.25}, {"joint_noise", nullptr, 0}});
+  TestPool p("hand_over_safe_finger", 1,
+             {kStraight, {"action_average", nullptr, 0.25}, {"joint_noise", nullptr, 0}});
   p->reset(nullptr, nullptr);
   p->baseline(Baseline::kHold);
   p.action(0)[3] = 1;

@@ -194,7 +194,8 @@ TEST_F(OtherHand, SavedStatesGoOn) {
 TEST_F(OtherHand, RolesComeFromTheRobot) {
   const Robot& robot = three_fingers();
   EXPECT_EQ(robot.action_of(5), -1) << "coupled";
-  TestPool p("made_up_hands_throw", 1, {{"joint_noise", nullptr, 0}, {"joint.SIDE.kp", nullptr, 3}});
+  TestPool p("made_up_hands_throw", 1,
+             {{"cost_mode", "command", 0}, {"joint_noise", nullptr, 0}, {"joint.SIDE.kp", nullptr, 3}});
   EXPECT_EQ(p->task().scene().link(0).joint.kp, 3);
   const Hand hand = find_hand(robot, p->task().scene(), 0);
   EXPECT_EQ(make_window(hand, kFf4, -10, 10).act, robot.action_of(robot.fingers[0].lateral));

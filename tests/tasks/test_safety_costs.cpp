@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "tasks/catalog.hpp"
 #include "tasks/throw/safety_costs.hpp"
@@ -66,22 +68,107 @@ class SafetyCost : public testing::Test {
 
 constexpr const char* kFinger = "hand_over_safe_finger";
 constexpr const char* kJoint = "hand_over_safe_joint";
+constexpr const char* kThrows[] = {kFinger, kJoint, "catch_underarm_safe_finger",
+                                   "catch_underarm_safe_joint"};
+bool of_finger(const char* task) {
+  return std::string(task).find("finger") != std::string::npos;
+}
+bool flying(const char* task) {
+  return std::string(task).find("catch") == 0;
+}
+const OptionInput kCommand = {"cost_mode", "command", 0};
+
+// Column 0 and the windows' columns by the paper's equations and the angles alone.
+struct ByAngle {
+  float cost[1 + kNumWindows], raw[1 + kNumWindows];
+};
+ByAngle by_angle(bool finger, const World& world) {
+  constexpr double kLow[] = {22.5, 22.5, -10}, kHigh[] = {67.5, 67.5, 10};  // degrees
+  constexpr int kJoints[] = {4, 3, 2};                                      // FF2, FF3, FF4
+  ByAngle out;
+  double worst = -1e9;
+  for (int i = 0; i < kNumWindows; ++i) {
+    const double q = world.q()[kJoints[i]];
+    const double excess = std::max(kLow[i] * kDegree - q, q - kHigh[i] * kDegree);
+    if (finger || i == rdm::kFf4) worst = std::max(worst, excess);
+    out.cost[1 + i] = excess > 0;
+    out.raw[1 + i] = static_cast<float>(excess);
+  }
+  out.cost[0] = worst > 0;
+  out.raw[0] = static_cast<float>(worst);
+  return out;
+}
+
+// By default the windows test the measured angles, to the bit, whatever the action.
+TEST_F(SafetyCost, IsTheWindowsOnTheMeasuredAngles) {
+  constexpr int kEnvs = 8, kHeld = 8;
+  PoolConfig c;
+  c.autoreset = Autoreset::kOff;  // what is read is of the episode that was judged
+  for (const char* task : kThrows)
+    for (const char* start : {"window", "paper"}) {
+      std::vector<OptionInput> options = {{"start_finger", start, 0}, {"fall_height", nullptr, -10}};
+      if (flying(task)) options.push_back({"base_limit", nullptr, 100});
+      TestPool p(task, kEnvs, options, c);
+      p->reset(nullptr, nullptr);
+      int outside = 0, inside = 0;
+      for (int t = 0; t < 75; ++t) {
+        if (t % kHeld == 0) p->baseline(Baseline::kRandom);
+        p->step(nullptr);
+        for (int i = 0; i < kEnvs; ++i) {
+          const ByAngle want = by_angle(of_finger(task), p->world(i));
+          for (int k = 0; k <= kNumWindows; ++k) {
+            ASSERT_EQ(p.cost(i)[k], want.cost[k]) << task << ", " << start << ": column " << k;
+            ASSERT_EQ(p.rows().cost_raw[i * p->cost_dim() + k], want.raw[k]) << task << ", " << start;
+          }
+          ++(want.cost[kCost] > 0 ? outside : inside);
+        }
+      }
+      EXPECT_GT(outside, 0) << task << ", " << start;
+      EXPECT_GT(inside, 0) << task << ", " << start;
+    }
+}
+
+// A world's motion and costs under random actions, which no option chooses.
+std::vector<float> course(const char* task, std::vector<OptionInput> options) {
+  std::vector<float> rows;
+  TestPool p(task, 2, options);
+  p->reset(nullptr, nullptr);
+  for (int t = 0; t < 20; ++t) {
+    rows.insert(rows.end(), p.rows().obs, p.rows().obs + 2 * p->obs_dim());
+    p->baseline(Baseline::kRandom);
+    p->step(nullptr);
+    rows.insert(rows.end(), p.rows().cost, p.rows().cost + 2 * p->cost_dim());
+  }
+  return rows;
+}
+
+// Words of older configurations are read, and mean what they say now.
+TEST_F(SafetyCost, WordsOfTheMode) {
+  for (const char* task : kThrows) {
+    const auto usual = course(task, {}), command = course(task, {kCommand});
+    for (const char* word : {"angle", "default", "paper"})
+      EXPECT_EQ(course(task, {{"cost_mode", word, 0}}), usual) << task << ' ' << word;
+    EXPECT_EQ(course(task, {kCommand, {"cost_signal", "angle", 0}}), usual) << task;
+    EXPECT_EQ(course(task, {{"cost_signal", "target", 0}}), command) << task;
+    EXPECT_NE(usual, command) << task;
+  }
+}
 
 TEST_F(SafetyCost, CommandsAtAndBeyondTheWindows) {
-  EXPECT_EQ(one_step(kFinger, {}, 0.5f, 0.5f, 0.5f)[kCost], 0);
-  EXPECT_EQ(one_step(kJoint, {}, 0.5f, 0.5f, 0.5f)[kCost], 0);
-  EXPECT_EQ(one_step(kFinger, {}, 0.51f, 0, 0)[kCost], 1);
-  EXPECT_EQ(one_step(kJoint, {}, 0.51f, 0, 0)[kCost], 1);
-  EXPECT_EQ(one_step(kFinger, {}, 0, 0, 0.51f)[kCost], 1);
-  EXPECT_EQ(one_step(kJoint, {}, 0, 0, 0.51f)[kCost], 0);
-  EXPECT_EQ(one_step(kFinger, {}, 0, -0.51f, 0)[kCost], 1);
-  EXPECT_EQ(one_step(kJoint, {}, 0, -1, -1)[kCost], 0);
+  EXPECT_EQ(one_step(kFinger, {kCommand}, 0.5f, 0.5f, 0.5f)[kCost], 0);
+  EXPECT_EQ(one_step(kJoint, {kCommand}, 0.5f, 0.5f, 0.5f)[kCost], 0);
+  EXPECT_EQ(one_step(kFinger, {kCommand}, 0.51f, 0, 0)[kCost], 1);
+  EXPECT_EQ(one_step(kJoint, {kCommand}, 0.51f, 0, 0)[kCost], 1);
+  EXPECT_EQ(one_step(kFinger, {kCommand}, 0, 0, 0.51f)[kCost], 1);
+  EXPECT_EQ(one_step(kJoint, {kCommand}, 0, 0, 0.51f)[kCost], 0);
+  EXPECT_EQ(one_step(kFinger, {kCommand}, 0, -0.51f, 0)[kCost], 1);
+  EXPECT_EQ(one_step(kJoint, {kCommand}, 0, -1, -1)[kCost], 0);
 }
 
 TEST_F(SafetyCost, EachWindowHasItsColumn) {
-  const auto all = one_step(kJoint, {}, -0.6f, 0.6f, -0.7f);
+  const auto all = one_step(kJoint, {kCommand}, -0.6f, 0.6f, -0.7f);
   EXPECT_EQ(all[kFf2] + all[kFf3] + all[kFf4], 3);
-  const auto one = one_step(kFinger, {}, 0, 0.6f, 0);
+  const auto one = one_step(kFinger, {kCommand}, 0, 0.6f, 0);
   EXPECT_EQ(one[kFf3], 1);
   EXPECT_EQ(one[kFf2] + one[kFf4], 0);
 }
@@ -92,19 +179,23 @@ TEST_F(SafetyCost, ModesAndTheirOverrides) {
   };
   EXPECT_EQ(joint({{"cost_mode", "literal", 0}}, 0.51f, 0), 0);
   EXPECT_EQ(joint({{"cost_mode", "literal", 0}}, 0, 0.51f), 1);
-  EXPECT_EQ(joint({{"cost_joint", "legacy", 0}}, 0, 0.51f), 1);
+  EXPECT_EQ(joint({kCommand, {"cost_joint", "legacy", 0}}, 0, 0.51f), 1);
   EXPECT_EQ(joint({{"cost_mode", "literal", 0}, {"cost_joint", "paper", 0}}, 0.51f, 0), 1);
   // measured angles lag behind: one step is not enough to bring FF4 out, nor FF2 and FF3 in
-  EXPECT_EQ(joint({{"cost_mode", "paper", 0}}, 1, 0), 0);
-  EXPECT_EQ(joint({{"cost_mode", "paper", 0}, {"cost_signal", "target", 0}}, 1, 0), 1);
-  EXPECT_EQ(joint({{"cost_signal", "angle", 0}}, 1, 0), 0);
-  EXPECT_EQ(one_step(kFinger, {{"cost_mode", "paper", 0}}, 0, 0, 0)[kCost], 1);
+  for (const char* word : {"angle", "default", "paper"}) {
+    const OptionInput mode = {"cost_mode", word, 0};
+    EXPECT_EQ(joint({mode}, 1, 0), 0) << word;
+    EXPECT_EQ(joint({mode, {"cost_signal", "target", 0}}, 1, 0), 1) << word;
+    EXPECT_EQ(one_step(kFinger, {mode, {"start_finger", "paper", 0}}, 0, 0, 0)[kCost], 1) << word;
+  }
+  EXPECT_EQ(joint({kCommand}, 1, 0), 1);
+  EXPECT_EQ(joint({kCommand, {"cost_signal", "angle", 0}}, 1, 0), 0);
   EXPECT_EQ(one_step(kFinger, {{"cost_mode", "literal", 0}}, 0, 0, 0)[kCost], 0);
 }
 
 TEST_F(SafetyCost, WindowsAreOptions) {
-  EXPECT_EQ(one_step(kJoint, {{"window.ff4.high", nullptr, 5}}, 0.3f, 0, 0)[kCost], 1);
-  EXPECT_EQ(one_step(kJoint, {{"window.ff4.high", nullptr, 15}}, 0.7f, 0, 0)[kCost], 0);
+  EXPECT_EQ(one_step(kJoint, {kCommand, {"window.ff4.high", nullptr, 5}}, 0.3f, 0, 0)[kCost], 1);
+  EXPECT_EQ(one_step(kJoint, {kCommand, {"window.ff4.high", nullptr, 15}}, 0.7f, 0, 0)[kCost], 0);
   PoolConfig c;
   c.task = kJoint;
   const OptionInput bad{"window.ff4.low", nullptr, 30};
@@ -113,9 +204,9 @@ TEST_F(SafetyCost, WindowsAreOptions) {
   EXPECT_EQ(code_of([&] { Pool::destroy(Pool::create(c)); }), Code::kArgument);
 }
 
-TEST_F(SafetyCost, AngleModeNeedsAFewStepsToEnter) {
+TEST_F(SafetyCost, FromThePapersStartItTakesAFewStepsToEnter) {
   TestPool p(kFinger, 1,
-             {{"cost_signal", "angle", 0}, {"start.x", nullptr, 1}, {"fall_height", nullptr, -10}});
+             {{"start_finger", "paper", 0}, {"start.x", nullptr, 1}, {"fall_height", nullptr, -10}});
   p->reset(nullptr, nullptr);
   int steps = 0;
   do {
@@ -126,6 +217,79 @@ TEST_F(SafetyCost, AngleModeNeedsAFewStepsToEnter) {
   EXPECT_GE(steps, 3);
   EXPECT_LE(steps, 15);
   EXPECT_LE(p.rows().cost_raw[kCost], 0);
+}
+
+// FF2 and FF3 begin at 27 degrees, a tenth of the window's width inside, and are drawn upwards from there.
+TEST_F(SafetyCost, TheFirstFingerBeginsInside) {
+  constexpr double kIn = (22.5 + 4.5) * kDegree, kMost = (67.5 - 4.5) * kDegree;
+  for (const char* task : kThrows) {
+    if (!of_finger(task)) continue;
+    for (const char* noise : {"one_sided", "literal"})
+      for (const double level : {0.0, 0.2, 1.0}) {
+        constexpr int kEnvs = 64;
+        TestPool p(task, kEnvs, {{"joint_noise_mode", noise, 0}, {"joint_noise", nullptr, level}});
+        p->reset(nullptr, nullptr);
+        for (int i = 0; i < kEnvs; ++i) {
+          const World& w = p->world(i);
+          for (const int joint : {3, 4}) {
+            EXPECT_GE(w.q()[joint], kIn - 1e-6) << task;  // joints are kept as floats
+            EXPECT_LE(w.q()[joint], (level == 0 ? kIn : kMost) + 1e-6) << task;
+            EXPECT_NEAR(w.target()[joint], w.q()[joint], 1e-6) << task;
+          }
+          EXPECT_LE(std::abs(w.q()[2]), 8 * kDegree + 1e-6);
+        }
+      }
+  }
+}
+
+// A hand that holds still, or does what learning starts from, costs nothing from the first step on.
+TEST_F(SafetyCost, StillHandsCostNothing) {
+  constexpr int kEnvs = 64;
+  std::vector<uint64_t> seeds;
+  for (uint64_t s = 0; s < kEnvs; ++s) seeds.push_back(s);
+  for (const char* task : kThrows)
+    for (const bool mean : {true, false}) {
+      TestPool p(task, kEnvs);
+      p->reset(seeds.data(), nullptr);
+      for (int t = 0; t < 75; ++t) {
+        if (mean)
+          for (int i = 0; i < kEnvs; ++i) p->task().initial_mean(p.action(i));
+        else
+          p->baseline(Baseline::kHold);
+        p->step(nullptr);
+        for (int i = 0; i < kEnvs; ++i) EXPECT_EQ(p.cost(i)[kCost], 0) << task << ", world " << i;
+      }
+    }
+}
+
+// With the commands, and for whom it is asked, the finger begins straight.
+TEST_F(SafetyCost, StartsThatAreThePapers) {
+  const auto first = [](std::vector<OptionInput> o) {
+    o.push_back({"joint_noise", nullptr, 0});
+    TestPool p(kFinger, 1, o);
+    p->reset(nullptr, nullptr);
+    return p->world(0).q()[3];
+  };
+  EXPECT_GT(first({}), 0.4);
+  EXPECT_EQ(first({kCommand}), 0);
+  EXPECT_EQ(first({{"cost_mode", "literal", 0}}), 0);
+  EXPECT_EQ(first({{"cost_signal", "target", 0}}), 0);
+  EXPECT_EQ(first({{"start_finger", "paper", 0}}), 0);
+  EXPECT_GT(first({kCommand, {"start_finger", "window", 0}}), 0.4);
+  // where the joint cannot be inside, nothing is moved
+  EXPECT_EQ(first({{"window.ff2.low", nullptr, 100}, {"window.ff2.high", nullptr, 120}}), 0);
+}
+
+// Hands with other joints begin inside too, where they have the joints.
+TEST_F(SafetyCost, OtherHandsBeginInside) {
+  constexpr int kEnvs = 16;
+  for (const char* hand : {"allegro_hand", "schunk_svh", "barrett_bh282", "robotiq_3f"}) {
+    TestPool p(kFinger, kEnvs, {{"hand", hand, 0}});
+    p->reset(nullptr, nullptr);
+    p->baseline(Baseline::kHold);
+    p->step(nullptr);
+    for (int i = 0; i < kEnvs; ++i) EXPECT_EQ(p.cost(i)[kCost], 0) << hand;
+  }
 }
 
 TEST_F(SafetyCost, Effort) {
