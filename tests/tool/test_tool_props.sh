@@ -23,10 +23,10 @@ demo pick_bottles 330 2.5 0.8 16 --set reset_noise=0.001     # (333, 0, 100 %)
 demo jenga 610 5 0.8 16 --set reset_noise=0.001              # (629, 0, 100 %)
 demo clean_house 19000 5 0.9 16 --set reset_noise=0.003      # (19056, 0, 100 %)
 # Throws and grasps are drawn by themselves.
-demo hand_over_safe_finger 18.5 0.5 0.7 200                  # (21.4, 0, 80 %)
-demo hand_over_safe_joint 18.5 0.5 0.7 200
-demo catch_underarm_safe_finger 8.5 0.5 0.3 200              # (10.9, 0, 40 %)
-demo catch_underarm_safe_joint 8.5 0.5 0.3 200
+demo hand_over_safe_finger 22 0.5 0.83 200                   # (24.3, 0.03, 91 %)
+demo hand_over_safe_joint 18.5 0.5 0.7 200                   # (21.4, 0, 80 %)
+demo catch_underarm_safe_finger 9.3 0.5 0.33 200             # (11.4, 0.03, 44 %)
+demo catch_underarm_safe_joint 8.5 0.5 0.3 200               # (10.9, 0, 40 %)
 demo hand_over_wall 8.6 3 0.22 200                           # (10.4, 1.7, 32 %)
 demo grasp 710 12 0.82 100                                   # (925, 6.7, 99 %)
 demo reorient 39.5 3 0 200                                   # (46.8, 1.3); hold has 34.7 at 7.5
