@@ -11,8 +11,8 @@
 
 namespace {
 
-// By the measured angle, and within its window at the start.
-constexpr char kAngle[] = "cost_mode=paper", kHeld[] = "cost_mode=paper\naction_repeat=4";
+// Actions that are held have effects.
+constexpr char kHeld[] = "action_repeat=4";
 
 Policy shipped(const char* task) {
   rdm_policy* p = nullptr;
@@ -166,7 +166,7 @@ TEST(Shields, ChangeNoByteWhereThereIsNothingToDo) {
 }
 
 TEST(Shields, SayWhatWouldHaveCome) {
-  const Pool pool = pool_of("hand_over_safe_joint", kAngle, 1);
+  const Pool pool = pool_of("hand_over_safe_joint", "", 1);
   const Shield shield = shield_of(pool);
   const rdm_buffers b = buffers_of(pool.get());
   std::vector<float> out(static_cast<size_t>(spec_of(pool.get()).action_dim));
@@ -203,7 +203,7 @@ TEST(Shields, SayWhatWouldHaveCome) {
 // What is proposed is not clean for a while already, so every plan is not.
 TEST(Shields, NameTheWorldInWhichNothingIsClean) {
   const Pool pool =
-      pool_of("hand_over_safe_finger", "cost_mode=paper\nwindow.ff2.low=80\nwindow.ff2.high=85", 3);
+      pool_of("hand_over_safe_finger", "start_finger=paper\nwindow.ff2.low=80\nwindow.ff2.high=85", 3);
   const rdm_buffers b = buffers_of(pool.get());
   const std::vector<float> zero(3 * static_cast<size_t>(spec_of(pool.get()).action_dim), 0.0f);
   {
@@ -354,13 +354,13 @@ Learned learn(const char* task, const char* pool_settings, const char* agent_set
 constexpr char kSmall[] = "hidden=16\nhorizon=16\naction_repeat=4\nmultiplier_init=1";
 
 TEST(ShieldedLearning, NeverBreaksARule) {
-  const Learned free = learn("hand_over_safe_joint", kAngle, kSmall, nullptr, 3);
+  const Learned free = learn("hand_over_safe_joint", "", kSmall, nullptr, 3);
   EXPECT_GT(free.violations, 0);
   EXPECT_EQ(free.refused, -3);  // there was none
   std::vector<std::vector<unsigned char>> policies{free.policy};
   for (const char* how : {"own", "applied", "cost", "end"}) {
     const std::string settings = std::string(kSmall) + "\nshield_learn=" + how;
-    const Learned l = learn("hand_over_safe_joint", kAngle, settings.c_str(), "", 3);
+    const Learned l = learn("hand_over_safe_joint", "", settings.c_str(), "", 3);
     EXPECT_EQ(l.violations, 0) << how;
     EXPECT_EQ(l.unproven, 0) << how;
     EXPECT_GT(l.refused, 0) << how;
@@ -368,7 +368,7 @@ TEST(ShieldedLearning, NeverBreaksARule) {
     policies.push_back(l.policy);
   }
   const Learned charged =
-      learn("hand_over_safe_joint", kAngle, (std::string(kSmall) + "\nshield_penalty=0.5").c_str(), "", 3);
+      learn("hand_over_safe_joint", "", (std::string(kSmall) + "\nshield_penalty=0.5").c_str(), "", 3);
   EXPECT_EQ(charged.violations, 0);
   EXPECT_NE(charged.policy, policies[1]);
 }
@@ -379,16 +379,15 @@ TEST(ShieldedLearning, ChangesNoByteWhereThereIsNothingToDo) {
   const double budgets[8] = {1e9, -1, -1, -1, -1, -1, -1, -1};
   for (const char* more : {"", "\nnoise_correlation=0.7"}) {
     const std::string plain = std::string(kSmall) + more, raw = plain + "\nnormalize_obs=false";
-    const Learned free = learn("hand_over_safe_joint", kAngle, plain.c_str(), nullptr, 2);
-    const Learned one = learn("hand_over_safe_joint", kAngle, plain.c_str(), "block=1", 2, budgets);
+    const Learned free = learn("hand_over_safe_joint", "", plain.c_str(), nullptr, 2);
+    const Learned one = learn("hand_over_safe_joint", "", plain.c_str(), "block=1", 2, budgets);
     EXPECT_EQ(one.refused, 0);
     EXPECT_EQ(one.policy, free.policy);
-    const Learned unscaled = learn("hand_over_safe_joint", kAngle, raw.c_str(), nullptr, 2);
-    EXPECT_EQ(learn("hand_over_safe_joint", kAngle, raw.c_str(), "block=16", 2, budgets).policy,
-              unscaled.policy);
-    EXPECT_EQ(learn("hand_over_safe_joint", kAngle, (raw + "\nstd_mode=state").c_str(), "block=5", 2, budgets)
-                  .policy,
-              learn("hand_over_safe_joint", kAngle, (raw + "\nstd_mode=state").c_str(), nullptr, 2).policy);
+    const Learned unscaled = learn("hand_over_safe_joint", "", raw.c_str(), nullptr, 2);
+    EXPECT_EQ(learn("hand_over_safe_joint", "", raw.c_str(), "block=16", 2, budgets).policy, unscaled.policy);
+    EXPECT_EQ(
+        learn("hand_over_safe_joint", "", (raw + "\nstd_mode=state").c_str(), "block=5", 2, budgets).policy,
+        learn("hand_over_safe_joint", "", (raw + "\nstd_mode=state").c_str(), nullptr, 2).policy);
   }
 }
 
@@ -453,7 +452,7 @@ TEST(ShieldRefusals, StatesOfOthersAndBrokenOnes) {
 }
 
 TEST(ShieldRefusals, OfLearning) {
-  const Pool pool = pool_of("hand_over_safe_joint", kAngle, 8);
+  const Pool pool = pool_of("hand_over_safe_joint", "", 8);
   rdm_agent_config c;
   ASSERT_EQ(rdm_agent_config_init(&c, sizeof c), RDM_OK);
   ASSERT_EQ(rdm_agent_config_for_pool(&c, pool.get()), RDM_OK);

@@ -43,9 +43,9 @@ refused 'shadow_hnd: no file, and no robot of that name; nearest is shadow_hand'
 sed 's/\.obj/.dae/' "$files/gripper.urdf" > far.urdf
 refused 'far.urdf: line 50: mesh: mesh package://gripper_description/meshes/pad.dae: not found' robot far.urdf
 "$tool" robot far.urdf --skip-meshes > out 2>&1 || say "--skip-meshes: $(cat out)"
-refused 'options.density: of URDF alone' robot "$files/hand.xml" --density 1000
+refused 'config.density: of URDF alone' robot "$files/hand.xml" --density 1000
 # Flags do with a robot of the list what they do with its file.
-refused 'options.density: of URDF and MJCF' robot shadow_hand --density 1000
+refused 'config.density: of URDF and MJCF' robot shadow_hand --density 1000
 "$tool" robot shadow_hand --name other --out other.robot > out 2>&1 || say "shadow_hand --name: $(cat out)"
 grep -q 'alias shadow: another name of what is now other$' out || say "shadow_hand --name: $(cat out)"
 "$tool" robots --robot other.robot | grep -q '^other ' || say "shadow_hand under another name"
