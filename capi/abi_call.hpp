@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "base/arena.hpp"
+#include "base/bytes.hpp"
 #include "base/error.hpp"
 #include "base/fpmode.hpp"
 #include "base/host.hpp"
@@ -198,6 +199,20 @@ rdm_option_spec describe(const OptionSpec& spec);
 // Text of any length for (text, capacity, size): NULL asks for the size alone, which is without the
 // terminator.
 void give_settings(const Options& options, char* text, size_t capacity, size_t* size);
+// Writes a byte stream of unknown length: `write` runs once to count and once into the caller's memory.
+template <class F>
+void emit(void* bytes, size_t capacity, size_t* size, F&& write) {
+  need(size, "size");
+  Writer count(nullptr, 0);
+  write(count);
+  if (bytes) {
+    if (capacity < count.size())
+      fail(Code::kRange, "capacity: %zu bytes, %zu are needed", capacity, count.size());
+    Writer out(bytes, capacity);
+    write(out);
+  }
+  *size = count.size();
+}
 // Option i for (key, text [RDM_TEXT_SIZE]).
 void give_option(const Options& options, int32_t i, const char** key, char* text, const char* settings_call);
 

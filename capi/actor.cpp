@@ -103,18 +103,7 @@ rdm_result rdm_actor_reset(rdm_actor* a, const uint8_t* terminated, const uint8_
 }
 
 rdm_result rdm_actor_write_state(const rdm_actor* a, void* bytes, size_t capacity, size_t* size) {
-  return call_on(a, [&] {
-    need(size, "size");
-    Writer count(nullptr, 0);
-    a->actor->write_state(count);
-    if (bytes) {
-      if (capacity < count.size())
-        fail(Code::kRange, "capacity: %zu bytes, %zu are needed", capacity, count.size());
-      Writer out(bytes, capacity);
-      a->actor->write_state(out);
-    }
-    *size = count.size();
-  });
+  return call_on(a, [&] { emit(bytes, capacity, size, [&](Writer& out) { a->actor->write_state(out); }); });
 }
 
 rdm_result rdm_actor_read_state(rdm_actor* a, const void* bytes, size_t size) {

@@ -116,21 +116,6 @@ DecisionBuffers carve_decision(Arena& arena, const AgentConfig& c) {
   return d;
 }
 
-// Writes a byte stream of unknown length: `write` runs once to count and once into the caller's memory.
-template <class F>
-void emit(void* bytes, size_t capacity, size_t* size, F&& write) {
-  need(size, "size");
-  Writer count(nullptr, 0);
-  write(count);
-  if (bytes) {
-    if (capacity < count.size())
-      fail(Code::kRange, "capacity: %zu bytes, %zu are needed", capacity, count.size());
-    Writer out(bytes, capacity);
-    write(out);
-  }
-  *size = count.size();
-}
-
 }  // namespace
 
 rdm_result rdm_agent_config_memory(const rdm_agent_config* c, size_t* bytes) {

@@ -241,18 +241,7 @@ rdm_result rdm_planner_set_plan(rdm_planner* p, const float* plan) {
 }
 
 rdm_result rdm_planner_write_state(const rdm_planner* p, void* bytes, size_t capacity, size_t* size) {
-  return call_on(p, [&] {
-    need(size, "size");
-    Writer count(nullptr, 0);
-    p->planner->write_state(count);
-    if (bytes) {
-      if (capacity < count.size())
-        fail(Code::kRange, "capacity: %zu bytes, %zu are needed", capacity, count.size());
-      Writer out(bytes, capacity);
-      p->planner->write_state(out);
-    }
-    *size = count.size();
-  });
+  return call_on(p, [&] { emit(bytes, capacity, size, [&](Writer& out) { p->planner->write_state(out); }); });
 }
 
 rdm_result rdm_planner_read_state(rdm_planner* p, const void* bytes, size_t size) {

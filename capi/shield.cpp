@@ -185,18 +185,7 @@ rdm_result rdm_shield_reset(rdm_shield* s, const uint8_t* mask) {
 }
 
 rdm_result rdm_shield_write_state(const rdm_shield* s, void* bytes, size_t capacity, size_t* size) {
-  return call_on(s, [&] {
-    need(size, "size");
-    Writer count(nullptr, 0);
-    s->shield->write_state(count);
-    if (bytes) {
-      if (capacity < count.size())
-        fail(Code::kRange, "capacity: %zu bytes, %zu are needed", capacity, count.size());
-      Writer out(bytes, capacity);
-      s->shield->write_state(out);
-    }
-    *size = count.size();
-  });
+  return call_on(s, [&] { emit(bytes, capacity, size, [&](Writer& out) { s->shield->write_state(out); }); });
 }
 
 rdm_result rdm_shield_read_state(rdm_shield* s, const void* bytes, size_t size) {
