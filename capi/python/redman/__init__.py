@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from . import stats
 from ._abi import (Autoreset, BaselineKind, Build, JointKind, MapInfo, OptionKind, OptionLevel, PolicyInfo, PoolStats,
                    RayHit, ResultCode, ShapeKind, Spec, Status)
 from ._actor import Actor
@@ -41,7 +42,7 @@ __all__ = [
     "NotFoundError", "Object", "Option", "OptionKind", "OptionLevel", "Options", "Origin", "PhysicsError", "Player", "Policy", "PolicyInfo",
     "Pool", "PoolStats", "RangeError", "RayHit", "ResultCode", "Robot", "Run", "Sensors", "Shape", "ShapeKind", "Spec", "StateError", "Status", "Task",
     "UnsupportedError", "UsageError", "VersionError", "__version__", "algo", "algos", "build", "c_function", "curve",
-    "evaluate", "memory", "objects", "robots", "sample_furthest", "task", "tasks", "train", "version",
+    "evaluate", "memory", "objects", "robots", "sample_furthest", "stats", "task", "tasks", "train", "version",
 ]
 
 moved(globals(), __all__)  # what is public is of this module, in texts and in pickles

@@ -1,0 +1,189 @@
+"""Numbers over several runs: what may be said of algorithms that were trained with a few seeds each.
+
+    from redman import stats
+    score = lambda run, task: stats.normalised(run.evaluate().return_mean, low[task], high[task])
+    ours = {task: [score(redman.train(task, seed=s), task) for s in range(10)] for task in tasks}
+    stats.iqm(ours), stats.interval(ours), stats.improvement(ours, theirs), stats.ranks({"ours": ours, "theirs": theirs})
+
+A score is a number of one run, the greater the better: negate a cost. Scores by task are a dict {task: scores of its runs}, or rows
+[tasks][runs], which may differ in length; numbers alone are the runs of one task. Scores of several tasks are joined, so
+they are to be of one scale: normalised() makes them so. A score that is not finite is refused: leave the run out, or give it
+the score of a failure, and say which.
+
+Agarwal, Schwarzer, Castro, Courville, Bellemare: Deep Reinforcement Learning at the Edge of the Statistical Precipice,
+NeurIPS 2021, is the source of iqm, interval and improvement. Intervals are of the percentile bootstrap (Efron, Tibshirani: An
+Introduction to the Bootstrap, 1993, chapter 13) with 10,000 resamples of a fixed seed: the same scores give the same interval.
+"""
+from __future__ import annotations
+
+from typing import Any, Callable, Hashable, Mapping, NamedTuple, Sequence, Union
+
+import numpy as np
+
+from ._error import ArgumentError, UsageError
+from ._rows import Array
+
+__all__ = ["Improvement", "improvement", "interval", "iqm", "normalised", "ranks"]
+
+Scores = Union[Mapping[Any, Any], Sequence[Any], Array]
+Samples = Sequence[Array]  # numbers of rows that were drawn, [resamples][rows] of each stratum
+_RESAMPLES, _SEED = 10_000, 0
+_AT_ONCE = 1 << 17  # rows that are drawn together, for memory
+
+
+class Improvement(NamedTuple):
+    """Probability that a run of one algorithm is better than one of another, and its interval."""
+
+    probability: float
+    low: float
+    high: float
+
+
+def iqm(scores: Scores) -> float:
+    """The interquartile mean of all scores of all tasks: of the n scores in order, the mean of those between the floor(n / 4)
+    lowest and as many highest.
+
+        IQM = 1 / (n - 2 c)  sum x_(i), i = c + 1 ... n - c,  c = floor(n / 4)
+
+    It does not move with a few runs that are far off, as the mean does, and uses half of the scores, where a median uses one or
+    two (Agarwal et al. 2021, section 4.3).
+    """
+    return float(iqm_of(np.concatenate(list(_by_task(scores).values()))[None])[0])
+
+
+def interval(scores_by_task: Scores, level: float = 0.95) -> tuple[float, float]:
+    """The interval of iqm(): runs are drawn with replacement within each task, as many as it has, and the quantiles
+    (1 - level) / 2 and (1 + level) / 2 of the resamples' interquartile means are its ends (stratified bootstrap, Agarwal et al.
+    2021, section 4.1).
+
+    Each task has 2 runs or more. With fewer than about 5 of few tasks in all the interval is too narrow.
+    """
+    tasks = _of_several(scores_by_task, "scores_by_task")
+
+    def statistic(drawn: Samples) -> Array:
+        return iqm_of(np.concatenate([runs[rows] for runs, rows in zip(tasks.values(), drawn)], axis=1))
+
+    low, high = bootstrap([len(runs) for runs in tasks.values()], statistic, level)
+    return float(low), float(high)
+
+
+def improvement(a: Scores, b: Scores, level: float = 0.95) -> Improvement:
+    """The probability that a run of algorithm a is better than a run of b on a task that is drawn alike, and its interval by
+    the bootstrap of interval(), of the runs of both.
+
+        P(A > B) = 1 / M  sum over tasks m of  1 / (N K)  sum over runs i, j of  S(a_mi, b_mj)
+        S(x, y) = 1 where x > y, 1/2 where x = y, 0 where x < y
+
+    with M tasks, N and K runs: the Mann-Whitney statistic of each task (Mann, Whitney: Ann. Math. Statist. 18, 1947; Agarwal et
+    al. 2021, section 4.3). It says how often a is better, not by how much. Where the interval is above 1/2, a is better.
+    """
+    ours, theirs = _of_several(a, "a"), _of_several(b, "b")
+    _need_same(ours, theirs, "a", "b")
+    won = [(np.sign(ours[task][:, None] - theirs[task]) + 1) / 2 for task in ours]
+
+    def statistic(drawn: Samples) -> Array:
+        shares = []
+        for s, of_a, of_b in zip(won, drawn, drawn[len(won):]):
+            shares.append((_counts(of_a, len(s)) @ s * _counts(of_b, s.shape[1])).sum(axis=1) / s.size)
+        of_all: Array = np.mean(shares, axis=0)
+        return of_all
+
+    sizes = [len(runs) for runs in (*ours.values(), *(theirs[task] for task in ours))]
+    low, high = bootstrap(sizes, statistic, level)
+    return Improvement(float(np.mean([s.mean() for s in won])), float(low), float(high))
+
+
+def normalised(value: Any, low: Any, high: Any) -> Any:
+    """(value - low) / (high - low): 0 is as good as low, a policy that learns nothing, and 1 as good as high, a reference.
+    Numbers, or arrays that numpy spreads over each other; low above high where less is better (Bellemare et al.: The Arcade
+    Learning Environment, JAIR 47, 2013)."""
+    x, zero, one = (np.asarray(number, np.float64) for number in (value, low, high))
+    if np.any(zero == one):
+        raise ArgumentError(f"normalised: low and high are the same, {low}")
+    out = (x - zero) / (one - zero)
+    return float(out) if out.ndim == 0 else out
+
+
+def ranks(scores: Mapping[str, Scores], level: float = 0.95) -> list[list[str]]:
+    """Groups of algorithms, {algorithm: scores by task}, whose intervals of iqm() all overlap, the best group first and the best
+    of a group first. An algorithm is in two groups where it overlaps with both, as in a diagram of critical differences
+    (Demsar: Statistical Comparisons of Classifiers over Multiple Data Sets, JMLR 7, 2006).
+
+    Algorithms that are in no group together differ. Those that are in one may still: improvement() is the sharper question
+    (Schenker, Gentleman: On Judging the Significance of Differences by Examining the Overlap Between Confidence Intervals, The
+    American Statistician 55, 2001).
+    """
+    if not isinstance(scores, Mapping) or not scores:
+        raise UsageError("scores: a dict {algorithm: scores by task}")
+    names = list(scores)
+    tasks = {name: _by_task(scores[name]) for name in names}
+    for name in names[1:]:
+        _need_same(tasks[names[0]], tasks[name], names[0], name)
+    ends = {name: interval(scores[name], level) for name in names}
+    best_first = sorted(names, key=lambda name: -iqm(scores[name]))
+    # intervals that overlap in pairs have a point in common, and the lowest end of one is such a point
+    groups = [[name for name in best_first if ends[name][0] <= low <= ends[name][1]]
+              for low in sorted({low for low, _ in ends.values()}, reverse=True)]
+    return [group for group in groups if not any(set(group) < set(other) for other in groups)]
+
+
+def iqm_of(samples: Array) -> Array:
+    """iqm() of each row, [resamples][scores]."""
+    cut = samples.shape[1] // 4
+    middle: Array = np.sort(samples, axis=1)[:, cut:samples.shape[1] - cut].mean(axis=1)
+    return middle
+
+
+def bootstrap(sizes: Sequence[int], statistic: Callable[[Samples], Array], level: float) -> Array:
+    """The lower and upper end of a percentile bootstrap's interval of statistic(), which is given rows that were drawn with
+    replacement from strata of these sizes; an axis more where a statistic has columns."""
+    if not 0 < level < 1:
+        raise ArgumentError(f"level: {level} is not between 0 and 1")
+    random = np.random.RandomState(_SEED)  # its stream is the same in all versions of numpy
+    at_once = max(1, min(_RESAMPLES, _AT_ONCE // sum(sizes)))
+    found = []
+    for first in range(0, _RESAMPLES, at_once):
+        count = min(at_once, _RESAMPLES - first)
+        found.append(statistic([random.randint(size, size=(count, size), dtype=np.int64) for size in sizes]))
+    ends: Array = np.quantile(np.concatenate(found), [(1 - level) / 2, (1 + level) / 2], axis=0)
+    return ends
+
+
+def _counts(rows: Array, size: int) -> Array:
+    """[resamples][size] how often each row was drawn."""
+    at = rows + size * np.arange(len(rows))[:, None]
+    return np.bincount(at.ravel(), minlength=len(rows) * size).reshape(len(rows), size)
+
+
+def _by_task(scores: Any, name: str = "scores") -> dict[Hashable, Array]:
+    """Scores of each task's runs."""
+    if isinstance(scores, Mapping):
+        named = dict(scores)
+    elif len(scores) and np.ndim(scores[0]):
+        named = dict(enumerate(scores))
+    else:
+        named = {0: scores}
+    out: dict[Hashable, Array] = {}
+    for task, runs in named.items():
+        row = np.atleast_1d(np.asarray(runs, np.float64))
+        if row.ndim != 1 or not len(row) or not np.isfinite(row).all():
+            raise ArgumentError(f"{name}: task {task}: one finite number for each run, not {runs!r}")
+        out[task] = row
+    if not out:
+        raise ArgumentError(f"{name}: there are no tasks")
+    return out
+
+
+def _of_several(scores: Any, name: str) -> dict[Hashable, Array]:
+    """The same of two runs or more of each task."""
+    tasks = _by_task(scores, name)
+    for task, runs in tasks.items():
+        if len(runs) < 2:
+            raise ArgumentError(f"{name}: task {task}: one run says nothing of others; 2 or more")
+    return tasks
+
+
+def _need_same(a: Mapping[Hashable, Any], b: Mapping[Hashable, Any], of_a: str, of_b: str) -> None:
+    if a.keys() != b.keys():
+        odd = ", ".join(map(str, [task for task in (*a, *b) if (task in a) != (task in b)]))
+        raise ArgumentError(f"{of_a} and {of_b} are of different tasks: {odd} of one alone")

@@ -1,0 +1,90 @@
+"""redman.stats: each number on cases that can be worked out by hand."""
+import math
+import unittest
+
+import numpy as np
+
+import redman
+from redman import stats
+
+
+class Runs(unittest.TestCase):
+    def test_the_middle_half(self):
+        self.assertEqual(stats.iqm([8, 1, 6, 3, 5, 4, 7, 2]), 4.5)  # of 3, 4, 5, 6
+        self.assertEqual(stats.iqm([0, 1, 5, 1000]), 3)
+        self.assertEqual(stats.iqm([1, 2, 6]), 3)  # floor(3 / 4) are left out
+        self.assertEqual(stats.iqm({"a": [0, 1], "b": [5, 1000]}), 3)  # of all tasks together
+        self.assertEqual(stats.iqm(np.array([[0, 1], [5, 1000]])), 3)
+        self.assertEqual(stats.iqm([2.5]), 2.5)
+
+    def test_an_interval_draws_runs_within_tasks(self):
+        # of task a {0, 1} and b {10, 10} a quarter of the draws is {0, 0, 10, 10}: 5, the others leave out a lowest: 5.5
+        scores = {"a": [0, 1], "b": [10, 10]}
+        self.assertEqual(stats.interval(scores), (5, 5.5))
+        self.assertEqual(stats.interval(scores, level=0.4), (5.5, 5.5))
+        # of {0, 1} alone 0, 1/2 and 1 with 1/4, 1/2 and 1/4
+        self.assertEqual(stats.interval([0, 1]), (0, 1))
+        self.assertEqual(stats.interval([[0, 1]], 0.4), (0.5, 0.5))
+        self.assertEqual(stats.interval({"a": [3, 3, 3], "b": [3, 3]}), (3, 3))
+
+    def test_an_interval_is_that_of_the_normal_law_for_many_runs(self):
+        # 1000 runs: the middle half's mean of a normal law has deviation 1.0945 / sqrt(n) (Huber's trimmed mean at 1/4)
+        runs = np.random.RandomState(1).standard_normal(1000)
+        low, high = stats.interval(runs)
+        self.assertAlmostEqual((high - low) / 2, 1.96 * math.sqrt(1.1980 / 1000), delta=0.006)
+        self.assertTrue(low < stats.iqm(runs) < high)
+        self.assertEqual(stats.interval(runs), (low, high))  # the same draws each time
+
+    def test_improvement_counts_pairs(self):
+        # 1 = 1, 1 < 3, 2 > 1, 2 < 3: a half and a whole of four
+        self.assertEqual(stats.improvement([1, 2], [1, 3]).probability, 0.375)
+        both = stats.improvement({"x": [1, 2], "y": [5, 5]}, {"x": [1, 3], "y": [0, 0, 0]})
+        self.assertEqual(both.probability, (0.375 + 1) / 2)
+        self.assertEqual(stats.improvement([1, 2, 3], [0, 0]), (1, 1, 1))
+        self.assertEqual(stats.improvement([0, 0], [1, 2, 3]), (0, 0, 0))
+        # a draw of a is {0, 0}, {0, 1}, {1, 1} with 1/4, 1/2, 1/4
+        one = stats.improvement([0, 1], [0.5, 0.5])
+        self.assertEqual((one.probability, one.low, one.high), (0.5, 0, 1))
+        self.assertEqual(stats.improvement([0, 1], [0.5, 0.5], 0.4), (0.5, 0.5, 0.5))
+        # one of b alone: {1, 1}, {1, 3}, {3, 3} against {2, 2}
+        self.assertEqual(stats.improvement([2, 2], [1, 3], 0.4), (0.5, 0.5, 0.5))
+        self.assertEqual(stats.improvement([2, 2], [1, 3]), (0.5, 0, 1))
+        # tasks by name, in any order
+        self.assertEqual(stats.improvement({"x": [1, 2], "y": [5, 5]}, {"y": [0, 0, 0], "x": [1, 3]}), both)
+
+    def test_improvement_is_a_mean_of_one_minus_the_other(self):
+        draw = np.random.RandomState(2)
+        a, b = ([draw.randint(0, 5, 7) for _ in range(3)] for _ in range(2))
+        one, other = stats.improvement(a, b), stats.improvement(b, a)
+        self.assertAlmostEqual(one.probability + other.probability, 1)
+        self.assertTrue(0 <= one.low <= one.probability <= one.high <= 1)
+
+    def test_normalised(self):
+        self.assertEqual(stats.normalised(7, 2, 12), 0.5)
+        self.assertEqual(stats.normalised(4, 8, 0), 0.5)  # less is better
+        np.testing.assert_array_equal(stats.normalised([2, 12, 22], 2, 12), [0, 1, 2])
+        with self.assertRaisesRegex(redman.ArgumentError, "low and high are the same"):
+            stats.normalised(1, 2, 2)
+
+    def test_ranks_are_groups_that_overlap(self):
+        self.assertEqual(stats.ranks({"b": [5, 5], "a": [10, 10], "c": [5, 5]}), [["a"], ["b", "c"]])
+        # intervals of two runs are from one to the other: (3, 5), (1, 4), (0, 2)
+        self.assertEqual(stats.ranks({"c": [0, 2], "a": [3, 5], "b": [1, 4]}), [["a", "b"], ["b", "c"]])
+        self.assertEqual(stats.ranks({"c": [0, 9], "a": [3, 5], "b": [1, 4]}), [["c", "a", "b"]])
+        self.assertEqual(stats.ranks({"a": {"x": [1, 1], "y": [2, 2]}, "b": {"x": [0, 0], "y": [0, 0]}}), [["a"], ["b"]])
+
+    def test_what_is_no_score_is_refused(self):
+        for call, words in ((lambda: stats.iqm([]), "one finite number for each run"),
+                            (lambda: stats.iqm([1, math.nan]), "one finite number for each run"),
+                            (lambda: stats.iqm({}), "no tasks"),
+                            (lambda: stats.interval({"x": [1]}), "scores_by_task: task x: one run"),
+                            (lambda: stats.interval([0, 1], 95), "level: 95 is not between 0 and 1"),
+                            (lambda: stats.improvement({"x": [1, 2]}, {"y": [1, 2]}), "a and b are of different tasks: x, y"),
+                            (lambda: stats.ranks({"a": {"x": [1, 2]}, "b": {"y": [1, 2]}}), "a and b are of different tasks"),
+                            (lambda: stats.ranks([1, 2]), "a dict")):
+            with self.subTest(words), self.assertRaisesRegex(redman.ArgumentError, words):
+                call()
+
+
+if __name__ == "__main__":
+    unittest.main()
