@@ -90,6 +90,10 @@ class Types(unittest.TestCase):
                             "epoch = redman.Agent(pool, cost_limits={'cost': 1.0}).rollout(pool)\n"
                             "x: float = epoch.ret\n"
                             "y: bool = redman.train('bandit', callback=lambda e: e.epoch > 3).evaluate().feasible\n"
+                            "shield = redman.Shield(pool, budgets={'cost': 1.0})\n"
+                            "shield.act(pool.action, mask=[True])\n"
+                            "kind: redman.ShieldKind = shield.row(0).kind\n"
+                            "low, high = redman.stats.interval({'a': [1.0, 2.0]})\n"
                             "z: str = redman.tasks()['bandit'].options['points'].help\n")
             run = subprocess.run([sys.executable, "-m", "mypy", "--strict", "--cache-dir", folder, "redman",
                                   "generate_abi.py", user], cwd=TREE / "capi/python", capture_output=True, text=True)

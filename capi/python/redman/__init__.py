@@ -14,23 +14,25 @@ from typing import TYPE_CHECKING
 
 from . import stats
 from ._abi import (Autoreset, BaselineKind, Build, JointKind, MapInfo, OptionKind, OptionLevel, PolicyInfo, PoolStats,
-                   RayHit, ResultCode, ShapeKind, Spec, Status)
+                   RayHit, ResultCode, ShapeKind, ShieldKind, ShieldStats, Spec, Status)
 from ._actor import Actor
-from ._agent import Agent, CostLimits, Epoch
+from ._agent import Agent, Epoch
 from ._callbacks import c_function
 from ._curve import Curve, Curves, curve
 from ._discovery import (Algo, Camera, Cost, Field, Joint, Object, Option, Robot, Shape, Task, algo, algos, build,
-                         objects, robots, task, tasks)
+                         objects, robots, shield_options, task, tasks)
 from ._error import (AllocationError, ArgumentError, CancelledError, Error, FileError, FormatError, InternalError,
                      MissingFileError, NotFoundError, PhysicsError, RangeError, StateError, UnsupportedError, UsageError,
                      VersionError)
 from ._hold import HoldWarning
+from ._limits import CostLimits
 from ._map import Map, sample_furthest
 from ._names import moved
 from ._options import Options
 from ._play import Evaluation, Player, evaluate
 from ._policy import Origin, Policy
 from ._pool import Pool, Sensors, memory
+from ._shield import Shield, ShieldRow
 from ._train import Callback, Run, train
 
 __version__ = version = build().version
@@ -40,9 +42,9 @@ __all__ = [
     "CancelledError", "Cost", "CostLimits", "Curve", "Curves", "Epoch", "Error", "Evaluation", "Field", "FileError",
     "FormatError", "HoldWarning", "InternalError", "Joint", "JointKind", "Map", "MapInfo", "MissingFileError",
     "NotFoundError", "Object", "Option", "OptionKind", "OptionLevel", "Options", "Origin", "PhysicsError", "Player", "Policy", "PolicyInfo",
-    "Pool", "PoolStats", "RangeError", "RayHit", "ResultCode", "Robot", "Run", "Sensors", "Shape", "ShapeKind", "Spec", "StateError", "Status", "Task",
+    "Pool", "PoolStats", "RangeError", "RayHit", "ResultCode", "Robot", "Run", "Sensors", "Shape", "ShapeKind", "Shield", "ShieldKind", "ShieldRow", "ShieldStats", "Spec", "StateError", "Status", "Task",
     "UnsupportedError", "UsageError", "VersionError", "__version__", "algo", "algos", "build", "c_function", "curve",
-    "evaluate", "memory", "objects", "robots", "sample_furthest", "stats", "task", "tasks", "train", "version",
+    "evaluate", "memory", "objects", "robots", "sample_furthest", "shield_options", "stats", "task", "tasks", "train", "version",
 ]
 
 moved(globals(), __all__)  # what is public is of this module, in texts and in pickles

@@ -4,13 +4,13 @@ from __future__ import annotations
 import _thread
 import contextlib
 import ctypes
-import math
 import os
 import threading
 import time
 from ctypes import byref, c_size_t
 from queue import SimpleQueue
-from typing import Any, Callable, Dict, Iterable, Iterator, Mapping, MutableMapping, Optional, Sequence, Union
+from typing import (TYPE_CHECKING, Any, Callable, Dict, Iterable, Iterator, Mapping, MutableMapping, Optional,
+                    Sequence, Union)
 
 import numpy as np
 
@@ -19,6 +19,7 @@ from ._abi import ActMode
 from ._error import ArgumentError, Error, NotFoundError, StateError, UsageError, error_of
 from ._files import read_whole, write_whole
 from ._library import Handle, assign, bytes_of, check, encoded, failure, filled, lib, raise_kept, raised, sized, text
+from ._limits import CostLimits, each_cost
 from ._names import Hinted, keywords, nearest
 from ._options import Given, Options, Value, kind_of, laid, option_array, read_settings, settings_of
 from ._policy import Policy
@@ -26,19 +27,28 @@ from ._pool import Pool
 from ._rows import Array, FloatArray, address, clouds, given
 from ._tensors import Tensors
 
+if TYPE_CHECKING:
+    from ._shield import Shield
+
 _MODES = {"sample": ActMode.SAMPLE, "mean": ActMode.MEAN}
-CostLimits = Union[None, float, Sequence[Optional[float]], Mapping[str, Optional[float]]]
 
 
 class Epoch(_abi.Epoch, Dict[str, Any]):  # type: ignore[misc]  # a record has a hash, a dict has none
     """One row of the learning curve; means over the last 100 finished episodes.
 
-    costs and multipliers have those of cost and multiplier by name. Also a dict of all that it has, which
-    json.dumps and loggers take.
+    costs and multipliers have those of cost and multiplier by name. violations, refused, unproven and copied are None where
+    there was nothing to count. Also a dict of all that it has, which json.dumps and loggers take.
     """
 
     costs: dict[str, float]
     multipliers: dict[str, float]
+    # Control steps in which column 0, or a cost with a limit by the task, was above 0; None: not an epoch of rollout.
+    violations: Optional[int]  # type: ignore[assignment]
+    # Decisions that a shield did not let through, and of these where nothing was known to be clean; control steps of its copies;
+    # None: there was none.
+    refused: Optional[int]  # type: ignore[assignment]
+    unproven: Optional[int]  # type: ignore[assignment]
+    copied: Optional[int]  # type: ignore[assignment]
 
     def __init__(self, struct: Union[_abi.rdm_epoch, Mapping[str, Any]], names: Optional[Sequence[str]] = None) -> None:
         if isinstance(struct, Mapping):  # a copy
@@ -49,6 +59,8 @@ class Epoch(_abi.Epoch, Dict[str, Any]):  # type: ignore[misc]  # a record has a
             cost, multiplier = self.cost[columns], self.multiplier[columns]
             self.__dict__.update(cost=cost, multiplier=multiplier, costs=dict(zip(names or (), cost)),
                                  multipliers=dict(zip(names or (), multiplier)))
+            self.__dict__.update((name, None) for name in ("violations", "refused", "unproven", "copied")
+                                 if getattr(self, name) < 0)
         self.update(self.__dict__)
 
     def __reduce__(self) -> Any:
@@ -116,7 +128,7 @@ class Agent(Hinted):
         if initial_mean is not None:
             own["initial_mean"] = np.broadcast_to(np.asarray(initial_mean, np.float32), own["action_dim"]).copy()
         own["cost_names"] = list(columns)
-        own["cost_limits"] = _limits(cost_limits, own["cost_limits"], columns)
+        own["cost_limits"] = each_cost(cost_limits, own["cost_limits"], columns, "cost_limits")
         self._lock = threading.RLock()
         self._make(own)
 
@@ -124,6 +136,7 @@ class Agent(Hinted):
         self._config = config
         self._handle: Optional[Handle] = _created(config)
         self._a = self._handle.value
+        self._shield: Optional[Shield] = None
         self.algo: _discovery.Algo = _discovery.algo(config["algo"])
         self.obs_dim, self.action_dim = int(config["obs_dim"]), int(config["action_dim"])
         self.cost_dim, self.num_envs = int(config["cost_dim"]), int(config["num_envs"])
@@ -242,7 +255,9 @@ class Agent(Hinted):
         KeyboardInterrupt is raised, agent and pool are good.
         """
         epoch = sized(_abi.rdm_epoch)
-        with self._lock, pool._lock:
+        with self._lock, pool._lock, contextlib.ExitStack() as stack:
+            if self._shield is not None:
+                stack.enter_context(self._shield._lock)
             self._run(lib.rdm_agent_rollout, pool._open(), byref(epoch))
         return self._epoch(epoch)
 
@@ -302,9 +317,10 @@ class Agent(Hinted):
 
     def _renew(self) -> None:
         """The same agent without the cancel that came too late to be heard."""
-        state = self.save()
+        state, shield = self.save(), self._shield
         self._make(self._config)
         self.load(state)
+        self.shield = shield
 
     def _epoch(self, struct: _abi.rdm_epoch) -> Epoch:
         return Epoch(struct, self._config["cost_names"])
@@ -331,6 +347,26 @@ class Agent(Hinted):
         if said:
             said[0] = float(self.options.get("cost_limit", said[0]))
         return [None if limit < 0 else limit for limit in said]
+
+    @property
+    def shield(self) -> Optional[Shield]:
+        """What looks at every decision of a rollout, None: nothing; to be set between horizons.
+
+            agent.shield = redman.Shield(pool, steps=agent.options["action_repeat"], budgets={"cost": 0})
+
+        Its decisions last as long as the agent's, and its first backup is what the agent itself would do without noise. Options
+        shield_learn and shield_penalty say what is learned from what it refuses.
+        """
+        return self._shield
+
+    @shield.setter
+    def shield(self, shield: Optional[Shield]) -> None:
+        from ._shield import Shield
+        if shield is not None and not isinstance(shield, Shield):
+            raise UsageError(f"shield: a redman.Shield or None, not {shield!r}")
+        with self._lock:
+            self._check(lib.rdm_agent_set_shield(self._a, None if shield is None else shield._open()))
+            self._shield = shield
 
     @property
     def tensors(self) -> _AgentTensors:
@@ -392,12 +428,13 @@ class Agent(Hinted):
         self.close()
 
     def __getstate__(self) -> dict[str, Any]:
-        return {"config": self._config, "state": self.save()}
+        return {"config": self._config, "state": self.save(), "shield": self._shield}
 
     def __setstate__(self, saved: Mapping[str, Any]) -> None:
         self._lock = threading.RLock()
         self._make(saved["config"])
         self.load(saved["state"])
+        self.shield = saved["shield"]
 
     def __repr__(self) -> str:
         closed = ", closed" if self._a is None else ""
@@ -436,41 +473,6 @@ def _config_of(pool: Pool) -> dict[str, Any]:
             "control_dt": config.control_dt, "max_steps": config.max_steps, "defaults": defaults,
             "initial_mean": pointed.get("initial_mean"), "cost_limits": pointed.get("cost_limits"),
             "fields": [(text(f.name), text(f.unit), f.offset, f.count) for f in config.fields[:config.num_fields]]}
-
-
-def _limits(wanted: CostLimits, usual: Optional[Array], columns: Sequence[str]) -> Optional[list[float]]:
-    """A limit for each column, below 0 for none; None leaves column 0 to option cost_limit."""
-    def number(limit: Optional[float]) -> float:
-        if limit is None:
-            return -1.0
-        try:
-            return -1.0 if math.isnan(limit) else float(limit)
-        except TypeError:
-            raise UsageError(f"cost_limits: numbers or None, not {limit!r}") from None
-
-    limits = None if usual is None else [float(limit) for limit in usual]
-    if wanted is None:
-        return limits
-    if isinstance(wanted, Mapping):
-        limits = limits or [-1.0] * len(columns)
-        for name, limit in wanted.items():
-            if name not in columns:
-                raise NotFoundError(f"cost_limits: no cost {name}{nearest(str(name), columns)}; there are "
-                                    f"{', '.join(columns)}")
-            limits[columns.index(name)] = number(limit)
-        return limits
-    if isinstance(wanted, (int, float, np.number)):
-        limits = limits or [-1.0] * len(columns)
-        if not limits:
-            raise ArgumentError("cost_limits: there are no costs")
-        limits[0] = number(float(wanted))
-        return limits
-    if isinstance(wanted, str) or not hasattr(wanted, "__iter__"):
-        raise UsageError(f"cost_limits: a number, one for each cost, or a dict by name, not {wanted!r}")
-    listed = [number(limit) for limit in wanted]
-    if len(listed) != len(columns):
-        raise ArgumentError(f"cost_limits: {len(listed)} limits for {len(columns)} costs")
-    return listed
 
 
 def known_options(algo: _discovery.Algo, options: Iterable[str]) -> dict[str, int]:

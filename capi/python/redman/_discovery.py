@@ -10,7 +10,7 @@ from typing import Any, Callable, Iterator, Optional, TypeVar, Union
 from . import _abi
 from ._abi import OptionKind, OptionLevel
 from ._error import NotFoundError, UsageError
-from ._library import encoded, filled, check, lib
+from ._library import encoded, filled, check, lib, sized
 from ._options import Value, default_of, laid
 from ._record import Record
 
@@ -183,6 +183,21 @@ def algo(name: str) -> Algo:
 def robots() -> dict[str, Robot]:
     """All robot descriptions by name."""
     return {robot.name: robot for robot in _listed(Robot, lib.rdm_robot_count())}
+
+
+@lru_cache(maxsize=None)
+def _shield_options() -> dict[str, Option]:
+    row = sized(_abi.rdm_option_spec)
+    out: dict[str, Option] = {}
+    while not lib.rdm_shield_option_at(len(out), byref(row)):
+        option = Option(row)
+        out[option.key] = option
+    return out
+
+
+def shield_options() -> dict[str, Option]:
+    """The options of a Shield by name, each with its help, default and bounds; empty without the simulation half."""
+    return dict(_shield_options())
 
 
 def objects() -> dict[str, Object]:

@@ -85,6 +85,7 @@ def _option(key: str) -> str:
     """The option of a task or an algorithm that a word stands for, "" for none."""
     from . import _discovery
     every = {name for algo in _discovery.algos().values() for name in algo.options}
+    every |= set(_discovery.shield_options())
     every |= {name for task in _discovery.tasks().values() for name in task.options}
     for word in (key, WORDS.get(key, "")):
         if word in every:

@@ -17,11 +17,12 @@ from typing import Any, Callable, Iterator, Mapping, NamedTuple, Optional, Union
 import numpy as np
 
 from . import _abi, _discovery, _events
-from ._agent import Agent, CostLimits, Epoch
+from ._agent import Agent, Epoch
 from ._curve import Curve
 from ._error import ArgumentError, FileError, NotFoundError, StateError, UnsupportedError, UsageError
 from ._files import MOST_JSON, MOST_TASK, read_bytes, read_whole, write_whole
 from ._library import check, encoded, lib, whole
+from ._limits import CostLimits
 from ._names import Hinted, keywords, nearest
 from ._options import Given, Options, Value, shown
 from ._play import Evaluation, evaluate, play, singly, summary

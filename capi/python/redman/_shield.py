@@ -1,0 +1,262 @@
+"""Shield: under it no cost exceeds its budget, whatever is proposed. Experimental, as redman/shield.h is."""
+from __future__ import annotations
+
+import ctypes
+import os
+import threading
+from ctypes import byref, c_size_t
+from typing import TYPE_CHECKING, Any, Mapping, Optional, Union
+
+import numpy as np
+
+from . import _abi, _discovery
+from ._abi import ShieldKind
+from ._actor import on_task
+from ._error import ArgumentError, UsageError
+from ._library import Handle, assign, bytes_of, check, filled, int32, lib, sized
+from ._limits import CostLimits, each_cost
+from ._names import Hinted, keywords
+from ._options import Options, Value, read_settings, settings_of
+from ._policy import Policy
+from ._pool import Pool
+from ._rows import Array, FloatArray, address, given
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+# A policy, its file or run folder, or "trained": the one that comes with the task.
+Backup = Union[Policy, str, "os.PathLike[str]"]
+# Of an environment or an evaluation: True, or a dict of options and of Shield's arguments budgets, seed and threads.
+Shielding = Union[None, bool, Mapping[str, Any]]
+NAMES = np.array([kind.name.lower() for kind in ShieldKind], object)  # of kinds
+
+
+class ShieldRow(_abi.ShieldRow):
+    """What a shield did in a world's last decision, and why; kind is a redman.ShieldKind."""
+
+    kind: ShieldKind
+    # Of what was refused: the cost that it would have met, and its name; None: nothing was, or the copy diverged.
+    column: Optional[int]  # type: ignore[assignment]
+    cost: Optional[str]
+    # That the plan goes on by, of Shield.backups; None: no other way was looked for.
+    backup: Optional[int]  # type: ignore[assignment]
+
+    def __init__(self, struct: _abi.rdm_shield_row, costs: list[str]) -> None:
+        super().__init__(struct)
+        column = None if struct.column < 0 else struct.column
+        self.__dict__.update(kind=ShieldKind(struct.kind), column=column, cost=None if column is None else costs[column],
+                             backup=None if struct.backup < 0 else struct.backup)
+
+
+class Shield(Hinted):
+    """Lets an action through only where an exact copy of the world, going on by a known plan, keeps within the budget of every
+    cost to the episode's end; else another action takes its place.
+
+        pool = redman.Pool("hand_over_safe_joint", 16, options={"action_repeat": 4})    # a step is a decision
+        pool.reset()
+        shield = redman.Shield(pool, policy)            # the policy is the first backup: a way to go on that is known
+        for _ in range(19):
+            pool.step(shield.act(policy.act(pool.obs)))         # or write pool.action, then shield.act()
+        print(shield.stats, pool.stats.violations)
+
+    policy: a Policy, its file or run folder, or "trained", the one that comes with the task; it must hold its actions as long
+    as a decision lasts. Behind policies come action 0 and the hold action (options zero, hold).
+    steps: of the pool that a decision lasts; None: as long as the policy holds an action, 1 without. Where it is more than 1, act
+    is called at every so many steps, and its action is held between.
+    budgets: on the sum of each cost over an episode, as Agent's cost_limits; None: the cost is not looked at. Column 0 has 0
+    unless it is said.
+    options: `redman.shield_options()` has them with their help. threads: of the copies; 0: as many as the pool has.
+
+    An exact copy knows what its world will draw: where a robot is real, the proof is one for the model, and option copies tries
+    each way in several that draw for themselves. A world in which nothing that was tried is clean is a StateError, which names it, or with options={"unproven": "least"} goes on by what exceeds the
+    budgets least.
+    """
+
+    _hints = {
+        "settings": "shield.options has all of them", "step": "pool.step(shield.act(action))", "save": "state()",
+        "load": "set_state(state)", "policies": "shield.backups", "kind": "shield.kinds has that of each world, "
+        "shield.row(env).kind one world's", "rows": "shield.row(env)", "close": "a shield ends with its last reference"}
+
+    @keywords(aliases={"num_threads": "threads", "cost_limits": "budgets", "cost_limit": "budgets", "budget": "budgets"},
+              options=True)
+    def __init__(self, pool: Pool, policy: Optional[Backup] = None, *, seed: int = 0, threads: int = 0,
+                 steps: Optional[int] = None, budgets: CostLimits = None, options: Optional[Options] = None) -> None:
+        if not isinstance(pool, Pool):
+            raise UsageError(f"pool: a redman.Pool, not {pool!r}; an environment takes shield=True")
+        usual = [0.0, *[-1.0] * (pool.cost_dim - 1)][:pool.cost_dim]
+        own = {"seed": seed, "num_threads": threads, "steps": 0 if steps is None else steps, "options": dict(options or {}),
+               "budgets": each_cost(budgets, usual, list(pool.costs), "budgets")}
+        self._make(pool, own, None if policy is None else _backup(policy, pool))
+
+    def _make(self, pool: Pool, own: dict[str, Any], policy: Optional[Policy]) -> None:
+        self.pool = pool
+        config = sized(_abi.rdm_shield_config)
+        check(lib.rdm_shield_config_init(byref(config), ctypes.sizeof(config)))
+        assign(config, {name: own[name] for name in ("seed", "num_threads", "steps")})
+        kinds = {key: option.kind for key, option in _discovery.shield_options().items()}
+        config.settings = settings_of(own["options"], kinds)
+        budgets = np.array(own["budgets"], np.float64)
+        config.pool, config.budgets = pool._open(), budgets.ctypes.data
+        config.policy = None if policy is None else policy._open()
+        with on_task(pool):
+            self._handle = Handle(lib.rdm_shield_create, lib.rdm_shield_destroy, byref(config))
+        held = 1 if policy is None else policy.info.action_repeat // pool.spec.action_repeat
+        self.steps: int = own["steps"] or held  # of the pool that a decision lasts
+        self._config: dict[str, Any] = {**own, "steps": self.steps}
+        self._policies = [] if policy is None else [policy]
+        self._lock = threading.RLock()
+        self._rows = _abi.FUNCTIONS["rdm_shield_act"].rows
+        self._lengths = {"num_envs": pool.num_envs, "action_dim": pool.action_dim}
+
+    def add(self, policy: Backup) -> None:
+        """One backup more, behind the policies that there are."""
+        policy = _backup(policy, self.pool)
+        with self._lock, on_task(self.pool):
+            check(lib.rdm_shield_add_policy(self._handle.value, policy._open()))
+            self._policies.append(policy)
+
+    def act(self, proposed: Any = None, mask: Any = None) -> FloatArray:
+        """What the worlds are to do [num_envs][action_dim] where `proposed` is what each would do; for a decision, whose action
+        is then held for `steps` steps of the pool.
+
+        proposed None looks at pool.action in place, and returns it. mask [num_envs]: worlds that decide now; the rows of others
+        come back as they are.
+        """
+        chosen = self._mask(mask)
+        rows: Array = self.pool.action if proposed is None else given(proposed, self._rows["proposed"], self._lengths, "proposed")
+        out = rows if proposed is None else rows.copy()
+        with self.pool._lock, self._lock:
+            check(lib.rdm_shield_act(self._handle.value, self.pool._open(), address(chosen), rows.ctypes.data, out.ctypes.data))
+        return out if proposed is None else out.reshape(np.shape(proposed))
+
+    def guard(self, mask: Optional[Array] = None) -> Array:
+        """act() of pool.action where mask holds, but for worlds whose action is not finite: it ends their episode, as without a
+        shield. The kinds of this decision [num_envs], OWN where nothing was asked."""
+        asked: Array = np.isfinite(self.pool.action).all(axis=1)
+        if mask is not None:
+            asked &= mask
+        if asked.any():
+            self.act(mask=asked)
+        return self.kinds * asked
+
+    def row(self, env: int = 0) -> ShieldRow:
+        """What was done in the last decision of one world."""
+        with self.pool._lock, self._lock:
+            return ShieldRow(filled(_abi.rdm_shield_row, lib.rdm_shield_get_row, self._handle.value, self.pool._open(),
+                                    int32(env, "env")), list(self.pool.costs))
+
+    @property
+    def kinds(self) -> npt.NDArray[np.int32]:
+        """[num_envs] redman.ShieldKind of the last decision of each world."""
+        out = np.empty(self.pool.num_envs, np.int32)
+        row = sized(_abi.rdm_shield_row)
+        with self.pool._lock, self._lock:
+            shield, pool, get = self._handle.value, self.pool._open(), lib.rdm_shield_get_row
+            for env in range(len(out)):
+                check(get(shield, pool, env, byref(row)))
+                out[env] = row.kind
+        return out
+
+    @property
+    def intervened(self) -> npt.NDArray[np.bool_]:
+        """[num_envs] where the last decision was not let through."""
+        refused: npt.NDArray[np.bool_] = self.kinds != ShieldKind.OWN
+        return refused
+
+    def plan(self, env: int = 0) -> FloatArray:
+        """[decisions][action_dim] the plan of one world from now to its episode's end; no rows where it has none."""
+        count = c_size_t()
+        with self.pool._lock, self._lock:
+            arguments = self._handle.value, self.pool._open(), int32(env, "env")
+            check(lib.rdm_shield_get_plan(*arguments, None, 0, byref(count)))
+            out = np.empty(count.value, np.float32)
+            check(lib.rdm_shield_get_plan(*arguments, out.ctypes.data, len(out), byref(count)))
+        return out.reshape(-1, self.pool.action_dim)
+
+    @property
+    def stats(self) -> _abi.ShieldStats:
+        """Counts of all worlds since the shield was made: decisions, how many it was asked about, what it did."""
+        return _abi.ShieldStats(filled(_abi.rdm_shield_stats, lib.rdm_shield_get_stats, self._handle.value))
+
+    @property
+    def interventions(self) -> int:
+        """Decisions so far that were not let through."""
+        counts = self.stats
+        return counts.changed + counts.planned + counts.unproven
+
+    @property
+    def options(self) -> dict[str, Value]:
+        """All options as this shield has them."""
+        return read_settings(lib.rdm_shield_get_settings, self._handle.value,
+                             {key: option.kind for key, option in _discovery.shield_options().items()})
+
+    @property
+    def budgets(self) -> list[Optional[float]]:
+        """The budget of each cost, None where it is not looked at."""
+        return [None if budget < 0 else budget for budget in self._config["budgets"]]
+
+    @property
+    def backups(self) -> list[Union[Policy, str]]:
+        """Ways to go on, in the order in which they are tried: policies, "zero", "hold"."""
+        options, out = self.options, list[Union[Policy, str]](self._policies)
+        return out + [name for name in ("zero", "hold") if options[name]]
+
+    def reset(self, mask: Any = None) -> None:
+        """Forgets the plans of all worlds, or of those where mask [num_envs] is true. An episode that begins is noticed
+        without."""
+        with self._lock:
+            check(lib.rdm_shield_reset(self._handle.value, address(self._mask(mask))))
+
+    def state(self) -> bytes:
+        """Plans, noise and counts."""
+        with self._lock:
+            return bytes_of(lib.rdm_shield_write_state, self._handle.value)
+
+    def set_state(self, state: bytes) -> None:
+        """Goes on from state() with the same bytes, beside a pool that was set to the state of that moment."""
+        with self._lock:
+            check(lib.rdm_shield_read_state(self._handle.value, bytes(state), len(state)))
+
+    def _mask(self, mask: Any) -> Optional[Array]:
+        return None if mask is None else given(mask, self._rows["mask"], self._lengths, "mask", spread=True)
+
+    def _open(self) -> int:
+        assert self._handle.value is not None
+        return self._handle.value
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {"pool": self.pool, "config": self._config, "policies": self._policies, "state": self.state()}
+
+    def __setstate__(self, saved: Mapping[str, Any]) -> None:
+        policies = saved["policies"]
+        self._make(saved["pool"], saved["config"], policies[0] if policies else None)
+        for policy in policies[1:]:
+            self.add(policy)
+        self.set_state(saved["state"])
+
+    def __repr__(self) -> str:
+        return f"<Shield of {self.pool.num_envs} of {self.pool.task.name}: {len(self.backups)} backups>"
+
+
+def _backup(policy: Backup, pool: Pool) -> Policy:
+    """A policy as it may be said."""
+    if isinstance(policy, Policy):
+        return policy
+    if isinstance(policy, str) and policy == "trained":
+        return Policy.trained(pool.task)
+    if isinstance(policy, (str, os.PathLike)):
+        return Policy.load(policy)
+    raise UsageError(f'policy: a redman.Policy, its file or run folder, or "trained", not {policy!r}')
+
+
+def shield_of(pool: Pool, wanted: Shielding, policy: Optional[Backup], steps: int = 1) -> Optional[Shield]:
+    """The shield that an environment or an evaluation was asked for."""
+    if wanted is None or wanted is False:
+        if policy is not None:
+            raise ArgumentError("shield_policy: there is no shield that it would be a backup of; shield=True")
+        return None
+    if wanted is not True and not isinstance(wanted, Mapping):
+        raise UsageError(f"shield: True, or a dict of options, budgets, seed and threads, not {wanted!r}")
+    options = {} if wanted is True else dict(wanted)
+    own = {name: options.pop(name) for name in ("budgets", "seed", "threads") if name in options}
+    return Shield(pool, policy, steps=steps, options=options, **own)

@@ -1,0 +1,279 @@
+"""Shield: no cost comes of what it lets through, in a pool and beside an agent; it tells what it did, goes on from a state with
+the same bytes, and says what is wrong."""
+import copy
+import json
+import pickle
+import unittest
+
+import numpy as np
+
+import redman
+from same import same
+
+TASK = "hand_over_safe_joint"
+HELD = {"action_repeat": 4}
+NOWHERE = {"start_finger": "paper", "window.ff2.low": 80, "window.ff2.high": 85}  # of safe_finger: no start is within it
+
+
+def worlds(n=6, options=HELD, task=TASK, **arguments):
+    pool = redman.Pool(task, n, seed=3, options=options, **arguments)
+    pool.reset()
+    return pool
+
+
+def play(pool, shield, steps):
+    for _ in range(steps):
+        pool.baseline("random")
+        if shield:
+            shield.act()
+        pool.step()
+
+
+class Pools(unittest.TestCase):
+    def test_no_cost_comes_whatever_is_proposed(self):
+        free, pool = worlds(16), worlds(16)
+        play(free, None, 30)
+        self.assertGreater(free.stats.violations, 0)
+        shield = redman.Shield(pool, seed=5)
+        play(pool, shield, 30)
+        stats = shield.stats
+        self.assertEqual((pool.stats.violations, stats.unproven, stats.decisions), (0, 0, 16 * 30))
+        self.assertGreater(shield.interventions, 0)
+        self.assertEqual(shield.interventions, stats.changed + stats.planned)
+        self.assertGreater(stats.copied, stats.decisions)
+
+    def test_it_looks_at_the_pools_actions_or_at_others(self):
+        pool = worlds(4)
+        shield = redman.Shield(pool)
+        self.assertIs(shield.act(), pool.action)
+        proposed = np.full((4, pool.action_dim), 2.0)  # all joints to their ends
+        given = proposed.copy()
+        for _ in range(18):
+            out = shield.act(proposed)
+            if shield.intervened.any():
+                break
+            pool.step(out)
+        self.assertTrue(shield.intervened.any())
+        self.assertTrue(same(proposed, given))
+        self.assertEqual((out.dtype, out.shape), (np.float32, given.shape))
+        changed = (out != given).any(axis=1)
+        self.assertTrue(same(changed, shield.intervened))
+        self.assertTrue(same(changed, shield.kinds != redman.ShieldKind.OWN))
+        kinds = shield.kinds
+        masked = shield.act(proposed, mask=[True, False, False, False])
+        self.assertTrue(same(masked[0], out[0]))
+        self.assertTrue((masked[1:] == 2).all())
+        self.assertTrue(same(shield.kinds, kinds))
+        one = worlds(1)
+        self.assertEqual(redman.Shield(one).act(np.zeros(one.action_dim)).shape, (one.action_dim,))
+
+    def test_a_row_says_what_would_have_come(self):
+        pool = worlds(1, {})
+        shield = redman.Shield(pool)
+        bad = np.zeros(pool.action_dim, np.float32)
+        bad[2] = 1  # FF4 to the end of its range
+        out = shield.act(bad)
+        while shield.row().kind == redman.ShieldKind.OWN:
+            row = shield.row()
+            self.assertEqual((row.column, row.cost, row.ahead), (None, None, 0))
+            pool.step(out)
+            out = shield.act(bad)
+        row, plan = shield.row(0), shield.plan(0)
+        self.assertIsInstance(row, redman.ShieldRow)
+        self.assertIs(row.kind, redman.ShieldKind.CHANGED)
+        self.assertEqual((row.column, row.cost), (0, "cost"))
+        self.assertGreater(row.ahead, 0)
+        self.assertIn(shield.backups[row.backup], ("zero", "hold"))
+        self.assertEqual(plan.shape, (row.planned, pool.action_dim))
+        self.assertTrue(same(plan[0], out))
+        for step in range(1, row.ahead + 1):  # without the shield it comes just then
+            pool.step(bad)
+            self.assertEqual(pool.cost[0, 0] > 0, step == row.ahead)
+
+    def test_budgets_are_said_as_limits_are(self):
+        pool = worlds(4)
+        rest = [None] * (pool.cost_dim - 1)
+        for said, has in ((None, [0, *rest]), (7, [7, *rest]), ({"ff2_range": 3.0}, [0, 3, *rest[1:]]),
+                          ({"cost": None, "ff2_range": 0}, [None, 0, *rest[1:]]), ([1, *rest], [1, *rest])):
+            self.assertEqual(redman.Shield(pool, budgets=said).budgets, has)
+        shield = redman.Shield(pool, budgets=7.0)
+        most = 0
+        for _ in range(18):
+            pool.baseline("random")
+            shield.act()
+            pool.step()
+            most = max(most, pool.episode_cost[:, 0].max())
+        self.assertGreater(most, 0)
+        self.assertLessEqual(most, 7)
+        with self.assertRaisesRegex(redman.NotFoundError, "budgets: no cost costt; nearest is cost"):
+            redman.Shield(pool, budgets={"costt": 1})
+        with self.assertRaisesRegex(redman.ArgumentError, "no cost has a budget"):
+            redman.Shield(pool, budgets={"cost": None})
+
+    def test_options_have_help_and_are_told(self):
+        rows = redman.shield_options()
+        self.assertEqual(list(rows)[:2], ["block", "look"])
+        self.assertTrue(all(row.help for row in rows.values()))
+        shield = redman.Shield(worlds(2), options={"noise": 0.5, "hold": False, "unproven": "least"})
+        self.assertEqual(list(shield.options), list(rows))
+        self.assertEqual({key: value for key, value in shield.options.items() if value != rows[key].default},
+                         {"noise": 0.5, "hold": False, "unproven": "least"})
+        self.assertEqual(shield.backups, ["zero"])
+
+    def test_policies_are_backups(self):
+        policy = redman.Policy.trained("reorient")
+        pool = worlds(3, {"action_repeat": policy.info.action_repeat}, "reorient")
+        for said in (policy, "trained"):
+            shield = redman.Shield(pool, said)
+            self.assertEqual((shield.steps, bytes(shield.backups[0])), (1, bytes(policy)))
+        shield = redman.Shield(pool)
+        shield.add(policy)
+        self.assertEqual(shield.backups, [policy, "zero", "hold"])
+        play(pool, shield, 8)
+        self.assertEqual(pool.stats.violations, 0)
+        single = worlds(2, {}, "reorient")
+        self.assertEqual(redman.Shield(single, policy).steps, policy.info.action_repeat)
+        with self.assertRaisesRegex(redman.ArgumentError, "policy: it holds an action for"):
+            redman.Shield(single, policy, steps=1)
+        with self.assertRaisesRegex(redman.VersionError, "on task reorient: "):
+            redman.Shield(single, redman.Policy.trained("jenga"))
+        with self.assertRaisesRegex(redman.UsageError, "policy: a redman.Policy"):
+            shield.add(3)
+
+
+class States(unittest.TestCase):
+    def test_a_state_goes_on_with_the_same_bytes(self):
+        pool = worlds()
+        shield = redman.Shield(pool, seed=5, options={"noise": 0.5})
+        play(pool, shield, 7)
+        at = pool.state(), shield.state()
+        play(pool, shield, 11)
+        end = pool.hash(), shield.state()
+        pool.set_state(at[0])
+        other = redman.Shield(pool, seed=5, options={"noise": 0.5})
+        other.set_state(at[1])
+        play(pool, other, 11)
+        self.assertEqual((pool.hash(), other.state()), end)
+        with self.assertRaises(redman.FormatError):
+            redman.Shield(pool).set_state(at[1])
+        with self.assertRaises(redman.FormatError):
+            other.set_state(at[1][:-9])
+        self.assertEqual(other.state(), end[1])
+
+    def test_pickle_and_deepcopy_go_on_alike(self):
+        pool = worlds(options={"action_repeat": 3}, task="reorient")
+        shield = redman.Shield(pool, "trained", seed=5)
+        shield.add("trained")
+        play(pool, shield, 5)
+        others = [pickle.loads(pickle.dumps(shield)), copy.deepcopy(shield)]
+        play(pool, shield, 5)
+        for other in others:
+            self.assertEqual((len(other.backups), other.steps, other.options), (4, 1, shield.options))
+            play(other.pool, other, 5)
+            self.assertEqual((other.pool.hash(), other.state()), (pool.hash(), shield.state()))
+
+    def test_threads_change_nothing(self):
+        ends = []
+        for threads in (0, 2):
+            pool = worlds(5, threads=threads)
+            shield = redman.Shield(pool, seed=1, threads=threads)
+            play(pool, shield, 12)
+            ends.append((pool.hash(), shield.state()))
+        self.assertEqual(*ends)
+
+    def test_a_reset_forgets_plans(self):
+        pool = worlds(2)
+        shield = redman.Shield(pool)
+        shield.act()
+        self.assertEqual([len(shield.plan(env)) for env in (0, 1)], [19, 19])
+        shield.reset([False, True])
+        self.assertEqual([len(shield.plan(env)) for env in (0, 1)], [19, 0])
+
+
+class Refused(unittest.TestCase):
+    def test_a_world_in_which_nothing_is_clean_is_named(self):
+        pool = worlds(3, NOWHERE, "hand_over_safe_finger")
+        shield = redman.Shield(pool)
+        with self.assertRaisesRegex(redman.StateError, 'world 1: .*column 0, cost; .*unproven=least'):
+            shield.act(mask=[0, 1, 1])
+        shield = redman.Shield(pool, options={"unproven": "least"})
+        shield.act()
+        self.assertEqual(shield.kinds.tolist(), [redman.ShieldKind.UNPROVEN] * 3)
+        self.assertEqual(shield.stats.unproven, 3)
+
+    def test_what_is_wrong_is_said(self):
+        pool = worlds(2)
+        shield = redman.Shield(pool)
+        for make, kind, words in (
+                (lambda: redman.Shield(pool, options={"blok": 3}), redman.NotFoundError, "block"),
+                (lambda: redman.Shield(pool, block=3), redman.UsageError, r"options=\{'block': 3\}"),
+                (lambda: redman.Shield(pool, options={"noise": 3}), redman.RangeError, "noise"),
+                (lambda: redman.Shield(pool, steps=2000), redman.RangeError, "steps"),
+                (lambda: redman.Shield("bandit"), redman.UsageError, "shield=True"),
+                (lambda: shield.act(np.zeros((3, pool.action_dim))), redman.ArgumentError, "proposed: shape"),
+                (lambda: shield.act(np.full((2, pool.action_dim), np.nan)), redman.ArgumentError, "not finite"),
+                (lambda: shield.act(mask=[1, 1, 1]), redman.ArgumentError, "mask: shape"),
+                (lambda: shield.row(2), IndexError, "env"),
+                (lambda: shield.settings, AttributeError, "shield.options"),
+                (lambda: shield.bakups, AttributeError, "nearest is backups"),
+                (lambda: redman.Shield(redman.Pool(TASK, 1)).act(), redman.StateError, "reset it first")):
+            with self.subTest(words), self.assertRaisesRegex(kind, words):
+                make()
+        pool.close()
+        with self.assertRaisesRegex(redman.StateError, "pool: it was closed"):
+            shield.act()
+
+
+class Agents(unittest.TestCase):
+    def learner(self, **options):
+        pool = worlds(8, {})
+        small = {"hidden": "16", "horizon": 16, "action_repeat": 4, **options}
+        return redman.Agent(pool, seed=1, options=small), pool
+
+    def test_rollouts_go_under_it(self):
+        agent, pool = self.learner()
+        free = agent.rollout(pool)
+        self.assertIsNone(agent.shield)
+        self.assertGreater(free.violations, 0)
+        self.assertEqual((free.refused, free.unproven, free.copied), (None, None, None))
+        self.assertIsNone(json.loads(json.dumps(free))["refused"])
+        agent, pool = self.learner(shield_learn="end")
+        agent.shield = shield = redman.Shield(pool, steps=4)
+        self.assertIs(agent.shield, shield)
+        epoch = agent.rollout(pool)
+        self.assertEqual((epoch.violations, epoch.unproven, pool.stats.violations), (0, 0, 0))
+        self.assertEqual(epoch.refused, shield.interventions)
+        self.assertGreater(epoch.refused, 0)
+        self.assertEqual(epoch.copied, shield.stats.copied)
+        agent.shield = None
+        self.assertIsNone(agent.rollout(pool).refused)
+
+    def test_what_was_recorded_by_hand_counts_no_violations(self):
+        with redman.Agent(obs_dim=1, action_dim=1, options={"horizon": 1}) as agent:
+            agent.act([[0.0]])
+            agent.record(1.0, [[1.0]], terminated=True)
+            self.assertIsNone(agent.update([[0.0]]).violations)
+
+    def test_a_copy_goes_on_alike(self):
+        agent, pool = self.learner()
+        agent.shield = redman.Shield(pool, steps=4)
+        agent.rollout(pool)
+        other, worlds_of_other = pickle.loads(pickle.dumps((agent, pool)))
+        self.assertIs(other.shield.pool, worlds_of_other)
+        self.assertEqual(repr(agent.rollout(pool)), repr(other.rollout(worlds_of_other)))
+        self.assertEqual(bytes(agent.policy()), bytes(other.policy()))
+
+    def test_what_does_not_fit_is_refused(self):
+        agent, pool = self.learner()
+        with self.assertRaisesRegex(redman.UsageError, "shield: a redman.Shield or None"):
+            agent.shield = True
+        agent.shield = redman.Shield(pool)
+        with self.assertRaisesRegex(redman.ArgumentError, "decisions last 1 control steps, the agent's 4"):
+            agent.rollout(pool)
+        agent.close()
+        with self.assertRaisesRegex(redman.StateError, "closed"):
+            agent.shield = None
+
+
+if __name__ == "__main__":
+    unittest.main()
