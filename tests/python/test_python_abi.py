@@ -93,6 +93,7 @@ class Types(unittest.TestCase):
                             "shield = redman.Shield(pool, budgets={'cost': 1.0})\n"
                             "shield.act(pool.action, mask=[True])\n"
                             "kind: redman.ShieldKind = shield.row(0).kind\n"
+                            "steps: int = redman.evaluate('zero', 'bandit', shield={'noise': 0.1}).violating_steps\n"
                             "low, high = redman.stats.interval({'a': [1.0, 2.0]})\n"
                             "z: str = redman.tasks()['bandit'].options['points'].help\n")
             run = subprocess.run([sys.executable, "-m", "mypy", "--strict", "--cache-dir", folder, "redman",

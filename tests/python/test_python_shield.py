@@ -1,5 +1,5 @@
-"""Shield: no cost comes of what it lets through, in a pool and beside an agent; it tells what it did, goes on from a state with
-the same bytes, and says what is wrong."""
+"""Shield: no cost comes of what it lets through, in a pool, beside an agent and in an evaluation; it tells what it did, goes
+on from a state with the same bytes, and says what is wrong."""
 import copy
 import json
 import pickle
@@ -13,6 +13,7 @@ from same import same
 TASK = "hand_over_safe_joint"
 HELD = {"action_repeat": 4}
 NOWHERE = {"start_finger": "paper", "window.ff2.low": 80, "window.ff2.high": 85}  # of safe_finger: no start is within it
+FREE = {"cost": 1e9}
 
 
 def worlds(n=6, options=HELD, task=TASK, **arguments):
@@ -273,6 +274,54 @@ class Agents(unittest.TestCase):
         agent.close()
         with self.assertRaisesRegex(redman.StateError, "closed"):
             agent.shield = None
+
+
+class Evaluations(unittest.TestCase):
+    def test_decisions_are_looked_at(self):
+        said = {"episodes": 12, "num_envs": 5, "action_repeat": 4}
+        free, e = redman.evaluate("random", TASK, **said), redman.evaluate("random", TASK, shield=True, **said)
+        self.assertEqual(free.violating_steps, free.costs[:, 0].sum())  # each is a cost of 1 of the one cost with a limit
+        self.assertGreater(free.violating_steps, 0)
+        self.assertEqual((free.decisions, free.interventions), (None, None))
+        self.assertEqual((e.violating_steps, e.cost_mean[0]), (0, 0))
+        self.assertEqual(e.decisions, np.ceil(e.lengths / 4).sum())
+        self.assertTrue(0 < e.interventions < e.decisions)
+
+    def test_a_shield_that_has_nothing_to_do_changes_no_number(self):
+        for player, more in (("trained", {}), ("trained", {"magnitudes": True}), ("random", {"action_repeat": 2})):
+            free = redman.evaluate(player, TASK, episodes=6, num_envs=4, **more)
+            e = redman.evaluate(player, TASK, episodes=6, num_envs=4, shield={"budgets": FREE}, **more)
+            self.assertEqual(e.interventions, 0)
+            for name in ("returns", "costs", "lengths", "successes"):
+                self.assertTrue(same(getattr(e, name), getattr(free, name)), (player, more, name))
+
+    def test_decisions_are_held(self):
+        policy = redman.Policy.trained(TASK)
+        one = redman.evaluate(policy, TASK, episodes=6, num_envs=4, shield=True)  # in single control steps
+        held = redman.evaluate(policy, TASK, episodes=6, num_envs=4, options=HELD, shield=True)
+        self.assertGreater(held.interventions, 0)
+        self.assertEqual((one.decisions, one.interventions, one.violating_steps),
+                         (held.decisions, held.interventions, held.violating_steps))
+        self.assertTrue(same(one.costs, held.costs))
+        self.assertTrue(same(one.lengths, held.lengths))
+
+    def test_what_is_no_number_ends_an_episode_there_too(self):
+        def play(obs):
+            return np.full((len(obs), 40), np.nan)
+        with self.assertWarns(RuntimeWarning):
+            e = redman.evaluate(play, TASK, episodes=2, shield=True)
+        self.assertEqual((e.bad_actions, e.decisions), (2, 0))
+
+    def test_what_is_wrong_is_said(self):
+        with self.assertRaisesRegex(redman.StateError, "unproven=least"):
+            redman.evaluate("zero", "hand_over_safe_finger", episodes=2, options=NOWHERE, shield=True)
+        e = redman.evaluate("zero", "hand_over_safe_finger", episodes=2, options=NOWHERE, shield={"unproven": "least"})
+        self.assertGreater(e.violating_steps, 0)
+        self.assertEqual(e.decisions, e.interventions)
+        for shield, policy, words in ((None, "trained", "shield_policy: there is no shield"), (3, None, "shield: True, or a dict"),
+                                      ({"blok": 3}, None, "block")):
+            with self.assertRaisesRegex(redman.Error, words):
+                redman.evaluate("zero", TASK, episodes=1, shield=shield, shield_policy=policy)
 
 
 if __name__ == "__main__":

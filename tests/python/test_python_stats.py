@@ -1,4 +1,4 @@
-"""redman.stats: each number on cases that can be worked out by hand."""
+"""redman.stats, and what an Evaluation says of its episodes: each number on cases that can be worked out by hand."""
 import math
 import unittest
 
@@ -6,6 +6,17 @@ import numpy as np
 
 import redman
 from redman import stats
+from redman._play import summary
+
+
+def evaluation(returns, costs, limits=(4,), successes=None, status=None):
+    """Of episodes with these numbers; costs are rows, or numbers of one column."""
+    n = len(returns)
+    rows = np.array(costs, float).reshape(n, -1)
+    flags = dict.fromkeys(("contacts_left_out", "unconverged", "slowed"), 0)
+    return summary([{"return": float(returns[i]), "cost": rows[i], "length": 10 + i, "fall": False,
+                     "success": bool(successes and successes[i]), "status": status[i] if status else 0, **flags}
+                    for i in range(n)], list(limits), 0)
 
 
 class Runs(unittest.TestCase):
@@ -84,6 +95,81 @@ class Runs(unittest.TestCase):
                             (lambda: stats.ranks([1, 2]), "a dict")):
             with self.subTest(words), self.assertRaisesRegex(redman.ArgumentError, words):
                 call()
+
+
+class Episodes(unittest.TestCase):
+    def test_standard_errors(self):
+        e = evaluation([1, 2, 3, 6], [[0, 1], [2, 1], [2, 1], [4, 1]], (4, None), [True, False, False, False])
+        # squares about 3: 4, 1, 0, 9; about 2: 4, 0, 0, 4
+        self.assertAlmostEqual(e.return_stderr, math.sqrt(14 / 3 / 4))
+        np.testing.assert_allclose(e.cost_stderr, [math.sqrt(8 / 3 / 4), 0])
+        self.assertAlmostEqual(e.success_stderr, math.sqrt(0.25 * 0.75 / 3))
+        self.assertEqual(e.return_iqm, 2.5)
+        for name, values in (("returns", [1, 2, 3, 6]), ("lengths", [10, 11, 12, 13]),
+                             ("successes", [True, False, False, False])):
+            self.assertEqual(getattr(e, name).tolist(), values)
+            with self.assertRaises(ValueError):  # as the rest, it cannot be changed
+                getattr(e, name)[0] = 0
+        self.assertEqual((e.costs.shape, e.costs[:, 0].tolist()), ((4, 2), [0, 2, 2, 4]))
+
+    def test_tails_of_costs(self):
+        twenty = evaluation(range(20), [[i, -i] for i in range(20)], (4, None))
+        self.assertEqual(twenty.cost_cvar, [18.5, -0.5])
+        fifteen = evaluation(range(15), range(15))
+        self.assertAlmostEqual(fifteen.cost_cvar[0], (14 + 0.5 * 13) / 1.5)
+        self.assertEqual(evaluation(range(7), range(7)).cost_cvar, [6])
+        eleven = evaluation(range(11), [10 - i for i in range(11)])
+        self.assertEqual(list(eleven.cost_quantiles), [0.5, 0.9, 0.99])
+        np.testing.assert_allclose([q[0] for q in eleven.cost_quantiles.values()], [5, 9, 9.9])
+
+    def test_intervals(self):
+        e = evaluation([0, 1], [[0, 3], [10, 3]], (4, None), [True, True])
+        # resamples are {0, 0}, {0, 1} twice, {1, 1}
+        self.assertEqual(e.interval("return_mean"), (0, 1))
+        self.assertEqual(e.interval("return_mean", 0.4), (0.5, 0.5))
+        self.assertEqual(e.interval("return_iqm", 0.4), (0.5, 0.5))
+        self.assertEqual(e.interval("cost_mean"), [(0, 10), (3, 3)])
+        self.assertEqual(e.interval("cost_cvar", 0.4), [(10, 10), (3, 3)])  # three of four have the 10
+        self.assertEqual(e.interval("length_mean"), (10, 11))
+        self.assertEqual(e.interval("success_rate"), (1, 1))
+        self.assertEqual(e.interval("violation_rate"), (0, 1))
+        with self.assertRaisesRegex(redman.ArgumentError, "'return_meen' is none of .*nearest is return_mean"):
+            e.interval("return_meen")
+        with self.assertRaisesRegex(redman.ArgumentError, "level"):
+            e.interval("return_mean", 0)
+
+    def test_an_interval_is_that_of_the_normal_law_for_many_episodes(self):
+        e = evaluation(np.random.RandomState(1).standard_normal(1000), np.zeros(1000))
+        low, high = e.interval("return_mean")
+        self.assertAlmostEqual((high - low) / 2, 1.96 * e.return_stderr, delta=0.004)
+        self.assertEqual(e.interval("return_mean"), (low, high))
+
+    def test_an_episode_that_went_wrong_is_no_measurement(self):
+        with self.assertWarns(RuntimeWarning):
+            e = evaluation([1, 99, 3], [0, 99, 2], successes=[True, True, False], status=[0, 2, 0])
+        self.assertTrue(np.isnan(e.returns[1]) and np.isnan(e.costs[1, 0]) and np.isnan(e.lengths[1]))
+        self.assertEqual(e.successes.tolist(), [True, False, False])
+        self.assertEqual((e.return_mean, e.return_iqm, e.cost_cvar, e.cost_quantiles[0.5]), (2, 2, [2], [1]))
+        self.assertEqual((np.nanmean(e.returns), e.successes.mean()), (e.return_mean, e.success_rate))
+        self.assertEqual(e.interval("cost_mean"), [(0, 2)])
+        low, high = e.interval("violation_rate")
+        self.assertTrue(low < e.violation_rate < high)
+        with self.assertWarns(RuntimeWarning):
+            none = evaluation([99], [99], status=[2])
+        for value in (none.return_stderr, none.cost_stderr[0], none.return_iqm, none.cost_cvar[0], none.cost_quantiles[0.9][0],
+                      none.success_stderr, *none.interval("return_mean"), *none.interval("cost_mean")[0]):
+            self.assertTrue(math.isnan(value))
+
+    def test_they_are_those_of_the_episodes_that_were_played(self):
+        # an action of a is a choice of 5 a: reward -(5 a - 2)^2, cost 5 a, of one step
+        e = redman.evaluate(lambda obs: np.linspace(0, 1, len(obs))[:, None], "bandit", episodes=5, num_envs=5)
+        choice = 5 * np.linspace(0, 1, 5)
+        np.testing.assert_allclose(e.returns, -(choice - 2) ** 2, rtol=1e-6)
+        np.testing.assert_allclose(e.costs[:, 0], choice, rtol=1e-6)
+        self.assertEqual(e.lengths.tolist(), [1] * 5)
+        self.assertEqual(e.violating_steps, 4)
+        self.assertEqual((e.episodes, e.decisions, e.interventions), (5, None, None))
+        self.assertNotIn("array", repr(e))
 
 
 if __name__ == "__main__":

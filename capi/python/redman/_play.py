@@ -9,17 +9,19 @@ from typing import TYPE_CHECKING, Any, Callable, Mapping, Optional, Sequence, Un
 
 import numpy as np
 
-from . import _png
+from . import _png, stats
 from ._actor import worlds_of
 from ._error import ArgumentError, Error, NotFoundError
 from ._names import nearest
 from ._options import Options
 from ._policy import Origin, Policy
 from ._pool import Pool
-from ._rows import Array, FloatArray
+from ._rows import Array, DoubleArray, FloatArray
+from ._shield import Backup, Shield, Shielding, shield_of
 from ._worlds import Center, center_of
 
 if TYPE_CHECKING:
+    import numpy.typing as npt
     from ._agent import Agent
     from ._train import Run
 
@@ -31,6 +33,34 @@ _BASELINES = ("zero", "hold", "random")
 Function = Callable[[FloatArray], Any]
 # What plays: a policy, a run or its folder, an agent, a baseline, a function of rows, a model with `predict`.
 Player = Union[Policy, str, "os.PathLike[str]", "Run", "Agent", Function, Any]
+
+
+def _cvar(samples: Array) -> Array:
+    """Conditional value at risk of each row [resamples][episodes]...: the mean of the largest tenth, where the episode on its
+    edge counts with the part of it that is within."""
+    tenth = samples.shape[1] / 10
+    weights = np.clip(tenth - np.arange(samples.shape[1]), 0, 1)
+    largest: Array = np.tensordot(-np.sort(-samples, axis=1), weights / tenth, (1, 0))
+    return largest
+
+
+def _mean(samples: Array) -> Array:
+    mean: Array = samples.mean(axis=1)
+    return mean
+
+
+def _stderr(values: Array) -> Any:
+    """Of the mean of rows; NaN of less than two."""
+    return values.std(axis=0, ddof=1) / np.sqrt(len(values)) if len(values) > 1 else np.full(values.shape[1:], np.nan)
+
+
+# What Evaluation.interval knows: rows of an evaluation, and what is made of such as were drawn from them.
+_STATISTICS: dict[str, tuple[Callable[[Evaluation], Array], Callable[[Array], Array]]] = {
+    "return_mean": (lambda e: e._sound(e.returns), _mean), "return_iqm": (lambda e: e._sound(e.returns), stats.iqm_of),
+    "cost_mean": (lambda e: e._sound(e.costs), _mean), "cost_cvar": (lambda e: e._sound(e.costs), _cvar),
+    "length_mean": (lambda e: e._sound(e.lengths), _mean), "success_rate": (lambda e: e.successes, _mean),
+    "violation_rate": (lambda e: e._violations(), _mean)}
+_QUANTILES = (0.5, 0.9, 0.99)
 
 
 @dataclass(frozen=True)
@@ -50,6 +80,14 @@ class Evaluation:
     fall_rate: float  # share of episodes that terminated
     violation_rate: float  # share of episodes over a limit
     cost_limits: list[Optional[float]]
+    violating_steps: int  # control steps in which column 0, or a cost with a limit by the task, was above 0
+    # of each episode, in the order of their numbers; NaN where an episode was no measurement
+    returns: DoubleArray = field(repr=False, compare=False)  # [episodes]
+    costs: DoubleArray = field(repr=False, compare=False)  # [episodes][cost_dim]
+    lengths: DoubleArray = field(repr=False, compare=False)  # [episodes] control steps
+    successes: npt.NDArray[np.bool_] = field(repr=False, compare=False)  # [episodes]
+    decisions: Optional[int] = None  # that the shield looked at; None: there was none
+    interventions: Optional[int] = None  # of these, that it did not let through
     diverged: int = 0  # episodes that ended as a value was not finite
     contacts_left_out: int = 0  # steps in which contacts beyond contacts_max were left out
     unconverged: int = 0  # steps in which contacts were not solved
@@ -64,21 +102,105 @@ class Evaluation:
             return False
         return all(limit is None or mean <= limit for mean, limit in zip(self.cost_mean, self.cost_limits))
 
+    @property
+    def return_stderr(self) -> float:
+        """Standard error of return_mean: s / sqrt(n), s^2 = sum (x - mean)^2 / (n - 1)."""
+        return float(_stderr(self._sound(self.returns)))
+
+    @property
+    def cost_stderr(self) -> list[float]:
+        """Of cost_mean, likewise."""
+        return list(map(float, _stderr(self._sound(self.costs))))
+
+    @property
+    def success_stderr(self) -> float:
+        """Of success_rate p, likewise: sqrt(p (1 - p) / (n - 1)). Where all n episodes are alike it is 0, and the rate of the
+        other kind may still be 3 / n (Hanley, Lippman-Hand: If Nothing Goes Wrong, Is Everything All Right?, JAMA 249, 1983)."""
+        return float(_stderr(self.successes))
+
+    @property
+    def return_iqm(self) -> float:
+        """Interquartile mean of the returns, as redman.stats.iqm."""
+        returns = self._sound(self.returns)
+        return float(stats.iqm_of(returns[None])[0]) if len(returns) else float("nan")
+
+    @property
+    def cost_cvar(self) -> list[float]:
+        """Conditional value at risk of each cost: its mean over the worst tenth of the episodes.
+
+            CVaR = 1 / k  sum of the k largest costs, k = n / 10; where k is not whole, the next one counts with the rest of k
+
+        (Rockafellar, Uryasev: Conditional Value-at-Risk for General Loss Distributions, J. Banking & Finance 26, 2002). Of 10
+        episodes or fewer it is the largest cost."""
+        costs = self._sound(self.costs)
+        return list(map(float, _cvar(costs[None])[0])) if len(costs) else [float("nan")] * costs.shape[1]
+
+    @property
+    def cost_quantiles(self) -> dict[float, list[float]]:
+        """The 0.5, 0.9 and 0.99 quantile of each cost, between two episodes by a straight line (definition 7 of Hyndman, Fan:
+        Sample Quantiles in Statistical Packages, The American Statistician 50, 1996)."""
+        costs = self._sound(self.costs)
+        if not len(costs):
+            return {q: [float("nan")] * costs.shape[1] for q in _QUANTILES}
+        return {q: list(map(float, np.quantile(costs, q, axis=0))) for q in _QUANTILES}
+
+    def interval(self, stat: str, level: float = 0.95) -> Any:
+        """The interval (low, high) of return_mean, return_iqm, length_mean, success_rate or violation_rate, and one for each
+        column of cost_mean or cost_cvar.
+
+        Episodes are drawn with replacement, as many as there are, and the quantiles (1 - level) / 2 and (1 + level) / 2 of the
+        resamples' values are its ends (percentile bootstrap, Efron, Tibshirani: An Introduction to the Bootstrap, 1993, chapter
+        13): 10,000 resamples of a fixed seed. It is of this one policy: of an algorithm redman.stats.interval over several runs
+        says more. NaN of less than two episodes."""
+        if stat not in _STATISTICS:
+            raise ArgumentError(f"interval: {stat!r} is none of {', '.join(_STATISTICS)}{nearest(str(stat), _STATISTICS)}")
+        rows_of, statistic = _STATISTICS[stat]
+        rows = rows_of(self)
+        if len(rows) > 1:
+            ends = stats.bootstrap([len(rows)], lambda drawn: statistic(rows[drawn[0]]), level)
+        else:
+            ends = np.full((2, *rows.shape[1:]), np.nan)
+        pairs = [(float(low), float(high)) for low, high in ends.reshape(2, -1).T]
+        return pairs if rows.ndim > 1 else pairs[0]
+
+    def _sound(self, rows: Array) -> Array:
+        """Those of episodes that were a measurement."""
+        return rows[~np.isnan(self.returns)]
+
+    def _violations(self) -> Array:
+        """[episodes] which are over a limit."""
+        limits = [np.inf if limit is None else limit for limit in self.cost_limits]
+        over: Array = np.isnan(self.returns) | (self.costs > limits).any(axis=1)
+        return over
+
 
 class _Plays:
     """Writes the actions of a pool for its next step."""
 
     def __init__(self, player: Union[Policy, str, Any], pool: Pool, action_repeat: Optional[int] = None,
-                 center: Optional[FloatArray] = None) -> None:
-        self._player, self._pool, self._center = player, pool, center
+                 center: Optional[FloatArray] = None, shield: Optional[Shield] = None) -> None:
+        self._player, self._pool, self._center, self._shield = player, pool, center, shield
         self._policy = player.actor(pool) if isinstance(player, Policy) else None
         # a function decides at every step of its own pool, which this one's may be parts of
         self._hold = 1 if action_repeat is None else action_repeat // pool.spec.action_repeat
         self._left = np.zeros(pool.num_envs, np.int64)
         self._state: Any = None  # of a model
         self._began = np.ones(pool.num_envs, np.bool_)
+        self._since = np.zeros(pool.num_envs, np.int64)  # steps of an episode so far, as the shield counts them
+        self._ran = np.zeros_like(pool.action)  # what it let through
 
     def act(self, mask: Optional[Array] = None) -> None:
+        self._propose(mask)
+        if self._shield is not None:
+            decides = self._since % self._shield.steps == 0
+            if mask is not None:
+                decides &= mask
+            self._shield.guard(decides)
+            self._ran[decides] = self._pool.action[decides]
+            self._pool.action[...] = self._ran
+            self._since += 1
+
+    def _propose(self, mask: Optional[Array]) -> None:
         if self._policy is not None:
             self._pool.action[...] = self._policy(mask=mask)
             return
@@ -115,7 +237,7 @@ class _Plays:
         return rows if self._center is None else rows + self._center
 
     def restart(self, worlds: Array) -> None:
-        self._left[worlds] = 0
+        self._left[worlds] = self._since[worlds] = 0
         self._began[worlds] = True
 
 
@@ -129,16 +251,16 @@ def limits_of(pool: Pool, wanted: Union[None, Sequence[Optional[float]], Mapping
 
 
 def play(pool: Pool, player: Any, episodes: int, magnitudes: bool = False, action_repeat: Optional[int] = None,
-         center: Optional[FloatArray] = None) -> list[dict[str, Any]]:
+         center: Optional[FloatArray] = None, shield: Optional[Shield] = None) -> list[dict[str, Any]]:
     """Each episode's return, costs, length, fall and success; the pool's autoreset is off, and it was just reset. With
     magnitudes costs are sums of cost_raw where it is above 0, as an agent with cost_signal=raw learns them; the pool
     then takes single control steps, for it shows cost_raw of the last one alone. action_repeat: control steps that a
-    baseline's or a function's actions last, None: a step of the pool."""
+    baseline's or a function's actions last, None: a step of the pool. shield looks at each decision."""
     if magnitudes and pool.spec.action_repeat != 1:
         raise ArgumentError(f"magnitudes: cost_raw is shown for each step of the pool, and one has "
                             f"{pool.spec.action_repeat} control steps")
     n = pool.num_envs
-    plays = _Plays(player, pool, action_repeat, center)
+    plays = _Plays(player, pool, action_repeat, center, shield)
     number = np.arange(n)
     playing = number < episodes
     success = np.zeros(n, np.bool_)
@@ -236,7 +358,8 @@ def _folded(key: str) -> str:
 def evaluate(player: Player, task: Optional[str] = None, episodes: int = 100, num_envs: int = 16, seed: int = 0,
              threads: int = 0, options: Optional[Options] = None,
              cost_limits: Optional[Sequence[Optional[float]]] = None, magnitudes: Optional[bool] = None, *,
-             action_repeat: Union[None, int, str] = None, center: Center = None) -> Evaluation:
+             action_repeat: Union[None, int, str] = None, center: Center = None, shield: Shielding = None,
+             shield_policy: Optional[Backup] = None) -> Evaluation:
     """How good a policy is over whole episodes: the same ones as `redman eval` plays for the same seed and number of worlds.
 
     player: a Policy, a Run, a run folder or policy file, an Agent, "trained" (the policy that comes with the task), a baseline
@@ -249,6 +372,10 @@ def evaluate(player: Player, task: Optional[str] = None, episodes: int = 100, nu
     holds by itself), and center, what an action of 0 does ("initial", or [action_dim]).
 
     With magnitudes costs are sums of cost_raw where it is above 0, as an agent with cost_signal=raw learns them.
+
+    shield puts every decision under a redman.Shield: True, or a dict of its options, budgets, seed and threads. Its first
+    backup is shield_policy, or the policy itself. A world in which nothing is clean is a StateError, which
+    shield={"unproven": "least"} makes a count of violating_steps.
     """
     if episodes < 1:
         raise ArgumentError("episodes: 1 or more")
@@ -281,10 +408,19 @@ def evaluate(player: Player, task: Optional[str] = None, episodes: int = 100, nu
     steps = pool.spec.action_repeat
     if magnitudes and steps > 1:
         pool = Pool(chosen, min(num_envs, episodes), seed, threads, autoreset="off", options=singly(laid))
+    player = judged.player
+    if isinstance(player, Policy):
+        held = player.info.action_repeat // pool.spec.action_repeat
+        if shield and shield_policy is None and not player.info.num_points:
+            shield_policy = player
+    else:
+        held = steps // pool.spec.action_repeat
     with pool:
+        guard = shield_of(pool, shield, shield_policy, held)
         pool.reset()
-        return summary(play(pool, judged.player, episodes, bool(magnitudes), steps, center_of(pool, center)),
-                       limits_of(pool, limits))
+        played = play(pool, player, episodes, bool(magnitudes), steps, center_of(pool, center), guard)
+        counts = {} if guard is None else {"decisions": guard.stats.decisions, "interventions": guard.interventions}
+        return summary(played, limits_of(pool, limits), pool.stats.violations, **counts)
 
 
 def singly(options: Mapping[str, Any]) -> dict[str, Any]:
@@ -292,8 +428,9 @@ def singly(options: Mapping[str, Any]) -> dict[str, Any]:
     return {**{key: value for key, value in options.items() if _folded(key) != "action_repeat"}, "action_repeat": 1}
 
 
-def summary(played: Sequence[dict[str, Any]], limits: Sequence[Optional[float]]) -> Evaluation:
-    """Means of episodes, with a warning where worlds went wrong."""
+def summary(played: Sequence[dict[str, Any]], limits: Sequence[Optional[float]], violating_steps: int,
+            **shielded: int) -> Evaluation:
+    """Means of episodes, with a warning where worlds went wrong. shielded: decisions and interventions."""
     counts = {name: sum(episode[name] for episode in played) for name in _STEP_FLAGS}
     counts.update({name: sum(episode["status"] & bit != 0 for episode in played) for name, bit in _END_FLAGS.items()})
     if any(counts.values()):
@@ -307,6 +444,16 @@ def summary(played: Sequence[dict[str, Any]], limits: Sequence[Optional[float]])
         if limit is not None:
             over |= costs[:, k] > limit
     lost = len(played) - len(sound)
+    measured = np.array([not episode["status"] & sum(_END_FLAGS.values()) for episode in played])
+
+    def of_each(values: Sequence[Any]) -> DoubleArray:
+        rows = np.array(values, np.float64)
+        rows[~measured] = np.nan
+        rows.flags.writeable = False
+        return rows
+
+    successes = np.array([episode["success"] for episode in played]) & measured
+    successes.flags.writeable = False
 
     def share(values: Any) -> float:
         return float(np.mean(values)) if len(values) else float("nan")
@@ -317,7 +464,10 @@ def summary(played: Sequence[dict[str, Any]], limits: Sequence[Optional[float]])
         length_mean=share([episode["length"] for episode in sound]),
         success_rate=sum(episode["success"] for episode in sound) / len(played),
         fall_rate=share([episode["fall"] for episode in sound]),
-        violation_rate=(int(over.sum()) + lost) / len(played), cost_limits=list(limits), **counts)
+        violation_rate=(int(over.sum()) + lost) / len(played), cost_limits=list(limits),
+        violating_steps=violating_steps, returns=of_each([episode["return"] for episode in played]),
+        costs=of_each([episode["cost"] for episode in played]), lengths=of_each([episode["length"] for episode in played]),
+        successes=successes, **shielded, **counts)
 
 
 def strip(policy: Policy, frames: int = 6, width: int = 240, height: int = 180) -> Optional[bytes]:

@@ -28,6 +28,7 @@ from ._options import Given, Options, Value, shown
 from ._play import Evaluation, evaluate, play, singly, summary
 from ._policy import Origin, Policy
 from ._pool import Pool
+from ._shield import Backup, Shielding
 
 # Of an evaluation during training; a policy that looks better than the best so far plays as many again
 # _CONFIRMATIONS times, and those alone say whether it is.
@@ -98,10 +99,12 @@ class Run(Hinted):
         raise UnsupportedError(f"Run.load: redman.Policy.load({os.fspath(folder)!r}) and redman.curve(...) read a run folder; "
                                 "the command `redman train --resume FOLDER` goes on with it")
 
-    def evaluate(self, episodes: int = 100, num_envs: int = 16, seed: int = 0, threads: int = 0) -> Evaluation:
+    def evaluate(self, episodes: int = 100, num_envs: int = 16, seed: int = 0, threads: int = 0, *, shield: Shielding = None,
+                 shield_policy: Optional[Backup] = None) -> Evaluation:
         """The policy on episodes that it was not chosen by: those of `redman.evaluate(folder)` and of
         `redman eval --policy FOLDER`. The report at the end of `redman train` is that of seed=run.seed + 1_000_000."""
-        return evaluate(self.policy, episodes=episodes, num_envs=num_envs, seed=seed, threads=threads)
+        return evaluate(self.policy, episodes=episodes, num_envs=num_envs, seed=seed, threads=threads, shield=shield,
+                        shield_policy=shield_policy)
 
     def _repr_svg_(self) -> str:
         return self.curve._repr_svg_()
@@ -433,13 +436,17 @@ def train(task: Union[str, _discovery.Task], algo: str = "ppo_lag", steps: float
         judge.reset([1 << 63 | (first + i) % (1 << 63) for i in range(_SELECTION_EPISODES)])
         return play(judge, policy, _SELECTION_EPISODES, magnitudes)
 
+    def looked_at(policy: Policy, numbers: range) -> Evaluation:
+        before = judge.stats.violations
+        episodes = [e for number in numbers for e in played(policy, number)]
+        return summary(episodes, counted, judge.stats.violations - before)
+
     def compete(policy: Policy) -> tuple[float, float]:
         """How it looked; a policy that is better than the best so far takes its place."""
         nonlocal best
-        look = summary(played(policy, 0), counted)
+        look = looked_at(policy, range(1))
         if best is None or _score(look) > best:
-            episodes = [e for number in range(1, 1 + _CONFIRMATIONS) for e in played(policy, number)]
-            score = _score(summary(episodes, counted))
+            score = _score(looked_at(policy, range(1, 1 + _CONFIRMATIONS)))
             if best is None or score > best:
                 best, run.policy = score, policy
         return look.return_mean, look.cost_mean[0] if look.cost_mean else 0.0
