@@ -501,6 +501,8 @@ class WithGymnasium(unittest.TestCase):
                 unbounded = not (np.isfinite(space.low).all() and np.isfinite(space.high).all())
                 rest = [str(w.message) for w in said if not (unbounded and "infinity" in str(w.message))]
                 self.assertEqual([text for text in rest if "Box" in text or "env" in text.lower()], [])
+        check_env(gymnasium.make(gym.env_id("hand_over_safe_joint"), options={"action_repeat": 4},
+                                 shield={"noise": 0}).unwrapped, skip_render_check=True)
 
     def test_every_task_has_an_id(self):
         import gymnasium
@@ -529,7 +531,9 @@ class WithGymnasium(unittest.TestCase):
         except ImportError:
             modes = [("SameStep" if gym._OLD else "NextStep", {})]
         decisions = {"action_repeat": "task", "center": "initial", "named": True}
-        for task, steps, kwargs in (*((*row, {}) for row in SHORT.items()), ("hand_over_safe_joint", 30, decisions)):
+        shielded = {"options": {"action_repeat": 4}, "shield": {"noise": 0}}
+        for task, steps, kwargs in (*((*row, {}) for row in SHORT.items()), ("hand_over_safe_joint", 30, decisions),
+                                    ("hand_over_safe_joint", 45, shielded)):
             for mode, argument in modes:
                 with self.subTest(task=task, mode=mode):
                     ours = gym.VectorEnv(task, 4, autoreset_mode=mode, **kwargs)

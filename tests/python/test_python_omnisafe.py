@@ -50,6 +50,33 @@ class Contract(unittest.TestCase):
             self.assertTrue(same(kept.numpy().reshape(n, -1), first))  # earlier tensors stay
             env.close()
 
+    def test_a_shield_is_that_of_the_gym(self):
+        said = {"shield": {"noise": 0}}
+        name = omnisafe.register("RedmanShielded-v0", "hand_over_safe_joint", **said)
+        for n in (1, 3):
+            env = omnisafe.Redman(name, num_envs=n)
+            worlds = [gym.Env("hand_over_safe_joint", action_repeat="task", center="initial", **said) for _ in range(n)]
+            began = env.reset(seed=5)[1]
+            self.assertEqual((bool(began["applied"].numpy().any()), bool(began["intervened"].numpy().any()), began["shield"]),
+                             (False, False, [""] * n))
+            for i, world in enumerate(worlds):
+                world.reset(seed=5 + i)
+            random, refused = np.random.default_rng(1), 0
+            for _ in range(30):
+                actions = random.uniform(-1, 1, (n, 40)).astype(np.float32)
+                info = env.step(torch.tensor(actions[0] if n == 1 else actions, dtype=torch.float32))[-1]
+                for i, world in enumerate(worlds):
+                    *_, terminated, truncated, told = world.step(actions[i])
+                    refused += told["intervened"]
+                    self.assertTrue(same(np.asarray(info["applied"].numpy().reshape(n, -1)[i]), told["applied"]))
+                    self.assertEqual((info["intervened"].numpy().reshape(n)[i], info["shield"][i]),
+                                     (told["intervened"], told["shield"]))
+                    if terminated or truncated:
+                        world.reset()
+            self.assertGreater(refused, 0)
+            self.assertEqual(env._worlds.pool.stats.violations, 0)
+            env.close()
+
     def test_seeds(self):
         env = omnisafe.Redman("RedmanHandOverSafeFinger-v0", num_envs=2)
         env.set_seed(7)

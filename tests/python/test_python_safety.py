@@ -52,6 +52,33 @@ class Contract(unittest.TestCase):
                     self.assertTrue(same(obs[i], last))
             self.assertGreaterEqual(ends, 3)
 
+    def test_a_shield_is_that_of_the_gym(self):
+        said = {"options": {"action_repeat": 4}, "shield": {"noise": 0}}
+        with safety.VectorEnv("hand_over_safe_joint", 3, **said) as envs:
+            ones = [gym.Env("hand_over_safe_joint", **said) for _ in range(3)]
+            envs.reset(seed=5)
+            for i, one in enumerate(ones):
+                one.reset(seed=5 + i)
+            envs.action_space.seed(1)
+            refused = 0
+            for _ in range(30):
+                actions = envs.action_space.sample()
+                *_, cost, terminated, truncated, info = envs.step(actions)
+                for i, one in enumerate(ones):
+                    told = one.step(actions[i])[-1]
+                    refused += told["intervened"]
+                    mine = {key: info[key][i] for key in ("applied", "intervened", "shield")}
+                    if terminated[i] or truncated[i]:
+                        self.assertEqual((mine["intervened"], mine["shield"]), (False, ""))
+                        mine = info["final_info"][i]
+                        one.reset()
+                    self.assertTrue(same(mine["applied"], told["applied"]))
+                    self.assertEqual((mine["intervened"], mine["shield"]), (told["intervened"], told["shield"]))
+            self.assertGreater(refused, 0)
+            self.assertEqual(envs.pool.stats.violations, 0)
+        with safety.Env("hand_over_safe_joint", **said) as env:
+            self.assertEqual(shaped(env.reset(seed=1)[1]), shaped(env.step(env.action_space.sample())[-1]))
+
     def test_every_task_has_an_id(self):
         from gymnasium.envs.registration import registry
         self.assertIsNone(safety.unregistered)

@@ -110,6 +110,31 @@ class Contract(unittest.TestCase):
         with self.assertRaisesRegex(redman.ArgumentError, "points"):
             vec.reset()
 
+    def test_a_shield_is_that_of_the_gym(self):
+        said = {"options": {"action_repeat": 4}, "shield": {"noise": 0}}
+        vec = sb3.VecEnv("hand_over_safe_joint", 3, **said)
+        worlds = [gym.Env("hand_over_safe_joint", **said) for _ in range(3)]
+        vec.seed(5)
+        vec.reset()
+        self.assertEqual([vec.reset_infos[0][key] for key in ("intervened", "shield")], [False, ""])
+        for i, env in enumerate(worlds):
+            env.reset(seed=5 + i)
+        vec.action_space.seed(1)
+        refused = 0
+        for _ in range(30):
+            actions = np.stack([vec.action_space.sample() for _ in worlds])
+            *_, done, infos = vec.step(actions)
+            for i, env in enumerate(worlds):
+                told = env.step(actions[i])[-1]
+                refused += told["intervened"]
+                self.assertTrue(all(same(infos[i][key], value) for key, value in told.items()))
+                if done[i]:
+                    again = env.reset()[1]
+                    self.assertTrue(all(same(vec.reset_infos[i][key], again[key]) for key in ("applied", "intervened", "shield")))
+        self.assertGreater(refused, 0)
+        self.assertEqual((vec.pool.stats.violations, vec.shield.stats.decisions), (0, 90))
+        vec.close()
+
     def test_wrong_actions(self):
         vec = sb3.VecEnv("bandit", 2)
         vec.reset()

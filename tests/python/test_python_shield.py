@@ -1,5 +1,5 @@
-"""Shield: no cost comes of what it lets through, in a pool, beside an agent and in an evaluation; it tells what it did, goes
-on from a state with the same bytes, and says what is wrong."""
+"""Shield: no cost comes of what it lets through, in a pool, an agent, an evaluation and an environment; it tells what it did,
+goes on from a state with the same bytes, and says what is wrong."""
 import copy
 import json
 import pickle
@@ -8,7 +8,8 @@ import unittest
 import numpy as np
 
 import redman
-from same import same
+from redman import gym
+from same import same, shaped
 
 TASK = "hand_over_safe_joint"
 HELD = {"action_repeat": 4}
@@ -322,6 +323,123 @@ class Evaluations(unittest.TestCase):
                                       ({"blok": 3}, None, "block")):
             with self.assertRaisesRegex(redman.Error, words):
                 redman.evaluate("zero", TASK, episodes=1, shield=shield, shield_policy=policy)
+
+
+class Environments(unittest.TestCase):
+    """redman.gym; the adapters over it have a test each beside their own."""
+
+    def test_every_step_goes_through_it(self):
+        for center in (None, "initial"):
+            with gym.Env(TASK, seed=1, action_repeat="task", center=center, shield=True) as env:
+                env.action_space.seed(1)
+                began = env.reset()[1]
+                self.assertEqual((began["applied"].any(), began["intervened"], began["shield"]), (False, False, ""))
+                kinds = set()
+                for _ in range(120):
+                    action = env.action_space.sample()
+                    *_, terminated, truncated, info = env.step(action)
+                    self.assertEqual(shaped(info), shaped(began))
+                    self.assertIs(type(info["intervened"]), bool)
+                    self.assertEqual(info["intervened"], info["shield"] != "own")
+                    self.assertEqual(same(info["applied"], action), not info["intervened"])
+                    ran = info["applied"] + (0 if center is None else env.worlds.center)
+                    np.testing.assert_allclose(ran, env.pool.action[0], atol=1e-6)
+                    self.assertEqual(info["cost"], 0)
+                    kinds.add(info["shield"])
+                    if terminated or truncated:
+                        env.reset()
+                self.assertLessEqual({"own", "changed"}, kinds)
+                self.assertEqual(env.shield.stats.decisions, 120)  # one for each step of four control steps
+                self.assertEqual(env.pool.stats.violations, 0)
+
+    def test_without_one_infos_are_as_ever(self):
+        with gym.Env("bandit") as env:
+            self.assertIsNone(env.shield)
+            self.assertEqual(list(env.reset()[1]), ["cost", "costs", "success", "status", "episode_status"])
+
+    def test_vectors_are_loops_over_single_worlds(self):
+        said = {"options": HELD, "shield": {"noise": 0}}  # noise of a shield has a stream for each of its worlds
+        for mode in ("NextStep", "SameStep", "Disabled"):
+            with gym.VectorEnv(TASK, 3, autoreset_mode=mode, **said) as envs:
+                envs.action_space.seed(2)
+                ones = [gym.Env(TASK, **said) for _ in range(3)]
+                envs.reset(seed=5)
+                for i, one in enumerate(ones):
+                    one.reset(seed=5 + i)
+                ended, refused = np.zeros(3, bool), 0
+                for _ in range(45):
+                    actions = envs.action_space.sample()
+                    obs, *_, info = envs.step(actions)
+                    self.assertEqual((info["shield"].dtype, info["intervened"].dtype, info["applied"].dtype),
+                                     (object, bool, object if gym._OLD else np.float32))
+                    for i, one in enumerate(ones):
+                        if mode == "NextStep" and ended[i]:
+                            told, ended[i] = one.reset()[1], False
+                        else:
+                            *_, terminated, truncated, told = one.step(actions[i])
+                            ended[i] = terminated or truncated
+                            refused += told["intervened"]
+                        final = mode == "SameStep" and ended[i]
+                        if final:
+                            if not gym._OLD:
+                                self.assertTrue(same(info["final_info"]["applied"][i], told["applied"]))
+                                self.assertEqual(info["final_info"]["shield"][i], told["shield"])
+                            else:
+                                self.assertTrue(same(info["final_info"][i]["applied"], told["applied"]))
+                            told = one.reset()[1]
+                        self.assertTrue(same(info["applied"][i], told["applied"]))
+                        self.assertEqual((info["intervened"][i], info["shield"][i]), (told["intervened"], told["shield"]))
+                        self.assertTrue(info["_shield"][i] and info["_applied"][i] and info["_intervened"][i])
+                    if mode == "Disabled" and ended.any():
+                        began = envs.reset(options={"reset_mask": ended})[1]
+                        self.assertTrue(same(began["_shield"], ended))
+                        self.assertEqual(began["shield"].tolist(), ["" if end else None for end in ended])
+                        for i in np.flatnonzero(ended):
+                            ones[i].reset()
+                self.assertGreater(refused, 0)
+                self.assertEqual(envs.pool.stats.violations, 0)
+                for one in ones:
+                    one.close()
+
+    def test_a_bad_action_ends_the_episode_there_too(self):
+        with gym.VectorEnv(TASK, 2, options=HELD, shield=True, autoreset_mode="NextStep") as envs:
+            envs.reset(seed=1)
+            actions = np.zeros((2, 40), np.float32)
+            actions[1, 0] = np.nan
+            *_, truncated, info = envs.step(actions)
+            self.assertEqual((truncated.tolist(), info["status"].tolist(), info["shield"].tolist()),
+                             ([False, True], [0, 4], ["own", "own"]))
+            self.assertEqual(envs.shield.stats.decisions, 1)
+
+    def test_options_and_a_policy(self):
+        said = {"budgets": {"cost": 5}, "seed": 3, "threads": 1, "unproven": "least"}
+        with gym.Env(TASK, action_repeat="task", shield=said, shield_policy="trained") as env:
+            self.assertEqual((env.shield.budgets[0], env.shield.options["unproven"], len(env.shield.backups)), (5, "least", 3))
+        with self.assertRaisesRegex(redman.ArgumentError, "policy: it holds an action for 4 steps"):
+            gym.Env(TASK, shield=True, shield_policy="trained")
+        with self.assertRaisesRegex(redman.ArgumentError, "shield_policy: there is no shield"):
+            gym.Env(TASK, shield_policy="trained")
+
+    def test_pickle_and_deepcopy_go_on_alike(self):
+        for make in (lambda: gym.Env(TASK, options=HELD, shield=True),
+                     lambda: gym.VectorEnv(TASK, 3, options=HELD, shield=True, autoreset_mode="SameStep")):
+            env = make()
+            env.reset(seed=4)
+            env.action_space.seed(1)
+            actions = [env.action_space.sample() for _ in range(14 if env.pool.num_envs > 1 else 5)]
+            env.step(actions[0])
+            others = [pickle.loads(pickle.dumps(env)), copy.deepcopy(env)]
+            expected = [env.step(action) for action in actions]
+            for other in others:
+                self.assertTrue(same([other.step(action) for action in actions], expected))
+
+    def test_what_is_closed_says_so(self):
+        env = gym.Env(TASK, options=HELD, shield=True)
+        env.reset(seed=1)
+        env.close()
+        self.assertIsNone(env.shield)
+        with self.assertRaisesRegex(redman.StateError, "closed"):
+            env.step(np.zeros(40, np.float32))
 
 
 if __name__ == "__main__":

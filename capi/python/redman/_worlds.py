@@ -10,11 +10,13 @@ from typing import Any, Mapping, Optional, Sequence, Union
 
 import numpy as np
 
+from ._abi import ShieldKind
 from ._error import ArgumentError, UnsupportedError
 from ._names import nearest
 from ._pool import Pool
 from ._rows import Array, FloatArray
 from ._senses import Senses
+from ._shield import NAMES, Backup, Shielding, shield_of
 
 Center = Union[None, str, Sequence[float], Array]
 Seeds = Union[None, int, Sequence[Optional[int]]]
@@ -40,13 +42,16 @@ class Worlds:
     seed: what the first reset() takes that is given none; None draws one from the system.
     action_repeat: control steps of a step, "task" for the rate at which the task's own learner decides.
     center: action of a learner's 0, "initial" for the pose with which the task's own learner begins, or [action_dim].
+    shield: what puts every action under a redman.Shield, True or a dict of its options, budgets, seed and threads; None: nothing.
+    shield_policy: its first backup, whose decisions last a step.
     senses: "" where pictures and clouds are observations; else why they cannot be, and option modality is refused.
     """
 
     def __init__(self, task: str, num_envs: int, *, seed: Optional[int] = None, autoreset: str = "off",
                  options: Optional[Mapping[str, Any]] = None, threads: int = 0,
                  action_repeat: Union[int, str] = 1, center: Center = None, camera: Optional[str] = None,
-                 width: int = 320, height: int = 240, senses: str = "") -> None:
+                 width: int = 320, height: int = 240, shield: Shielding = None, shield_policy: Optional[Backup] = None,
+                 senses: str = "") -> None:
         options = dict(options or {})
         if action_repeat != 1:
             options["action_repeat"] = 0 if action_repeat == "task" else action_repeat
@@ -59,6 +64,8 @@ class Worlds:
         self.center = center_of(self.pool, center)
         reach = np.ones(self.pool.action_dim, np.float32) if self.center is None else 1 + np.abs(self.center)
         self.action_low, self.action_high = -reach, reach
+        self.shield = shield_of(self.pool, shield, shield_policy)
+        self._applied, self._kinds = np.zeros_like(self.action), np.zeros(num_envs, np.int32)  # of the last step
         low, self.obs_high = self.pool.bounds
         self.obs_low = np.where(low == self.obs_high, low - 1, low)  # checkers take no box without width
 
@@ -137,13 +144,13 @@ class Worlds:
 
     def act(self, actions: Any) -> None:
         """Writes a learner's actions [num_envs][action_dim] for the next step."""
-        self._write(self.action, actions)
+        self._look(self._write(self.action, actions))
 
     def act_alone(self, action: Any) -> None:
         """The same for the one world there is: [action_dim]."""
-        self._write(self.action[0], action)
+        self._look(self._write(self.action[0], action))
 
-    def _write(self, to: FloatArray, actions: Any) -> None:
+    def _write(self, to: FloatArray, actions: Any) -> Array:
         self.pool.watch(actions, self.center is not None)
         rows = np.asarray(actions)
         if rows.dtype != np.float64:  # an actor's about the center, whose sum is then exact
@@ -154,6 +161,29 @@ class Worlds:
             to[...] = rows
         else:
             np.add(rows, self.center, out=to, casting="same_kind")
+        return rows
+
+    def _look(self, actions: Array) -> None:
+        """Puts what the shield lets through in the place of a learner's actions."""
+        if self.shield is None:
+            return
+        # of worlds that only begin anew there is nothing to ask
+        goes_on = ~(self.terminated | self.truncated) if self.pool.autoreset == "next_step" else None
+        self._kinds = self.shield.guard(goes_on)
+        own = self._kinds == ShieldKind.OWN
+        ran = self.action.copy() if self.center is None else self.action - self.center
+        self._applied = np.where(own[:, None], actions.reshape(ran.shape), ran).astype(np.float32)
+
+    def shielded(self) -> dict[str, Array]:
+        """What infos say of the shield in the last step, a row for each world; nothing where there is none."""
+        if self.shield is None:
+            return {}
+        return {"applied": self._applied.copy(), "intervened": self._kinds != ShieldKind.OWN, "shield": NAMES[self._kinds]}
+
+    def close(self) -> None:
+        """Ends the worlds, and the shield's copies."""
+        self.shield = None
+        self.pool.close()
 
     def render(self, env: int = 0, what: str = "rgb") -> Array:
         """A picture [height][width][3] of a world, or its depth [height][width], m."""

@@ -10,6 +10,11 @@ cost is in its info: "cost", the task's own (column 0), and "costs" [cost_dim], 
 episode began. Infos of a reset have the same keys, all 0 but for a first observation that was not finite (2). An episode
 is named by its seed alone: world i of reset(seed=s) has the episode of an Env with reset(seed=s + i).
 
+shield=True puts every action under a redman.Shield, which lets it through only where no cost can come of it. Infos then have
+"applied", the action that ran, as the learner would have said it; "intervened", whether it was another; and "shield", what
+was done: "own", "changed", "plan" or "unproven" (redman.ShieldKind), "" in a reset. Where the shield tries noisy actions
+(shield={"noise": 0} does not), its own noise goes on from episode to episode.
+
 With option modality (rgb, depth, segmentation, points, voxels joined by +) an observation is a dict: "state", the row, and
 an entry for each of them; pictures of one camera are [height][width]..., of several [cameras][height][width]...
 named=True makes it a dict too: an entry for each field in place of "state", in the row's order, so that Gymnasium's
@@ -29,6 +34,7 @@ from ._discovery import tasks
 from ._error import ArgumentError
 from ._pool import Pool
 from ._rows import Array
+from ._shield import Backup, Shield, Shielding
 from ._worlds import Center, Seeds, Worlds
 
 try:
@@ -108,6 +114,11 @@ class _Named:
         return self.worlds.pool
 
     @property
+    def shield(self) -> Optional[Shield]:
+        """What looks at every action; None: nothing."""
+        return self.worlds.shield
+
+    @property
     def cost_limits(self) -> Array:
         """[cost_dim] limit on each cost's sum over an episode; NaN, as numpy writes None, where there is none."""
         return np.array([c.limit for c in self.pool.costs.values()], np.float64)
@@ -123,13 +134,13 @@ class _Named:
         """What infos say of a step, a row for each world."""
         w = self.worlds
         return {"cost": w.cost[:, 0].astype(np.float64), "costs": w.cost.copy(), "success": w.success.copy(),
-                **{key: rows.astype(np.int64) for key, rows in self._flags().items()}}
+                **{key: rows.astype(np.int64) for key, rows in self._flags().items()}, **w.shielded()}
 
     def _told_of(self, i: int) -> Info:
         """The same of one world."""
         w = self.worlds
         return {"cost": w.cost.item(i, 0), "costs": w.cost[i].copy(), "success": w.success.item(i),
-                **{key: rows.item(i) for key, rows in self._flags().items()}}
+                **{key: rows.item(i) for key, rows in self._flags().items()}, **shielded_of(w, i)}
 
     def _flags(self) -> dict[str, Array]:
         """What went wrong in each world."""
@@ -137,7 +148,7 @@ class _Named:
 
     def _began_of(self, i: int) -> Info:
         """What infos say of a reset: the same keys, and nothing has happened yet but what went wrong in it."""
-        nothing = {key: np.zeros_like(value) if isinstance(value, np.ndarray) else type(value)(0)
+        nothing = {key: np.zeros_like(value) if isinstance(value, np.ndarray) else type(value)()
                    for key, value in self._told_of(i).items()}
         return {**nothing, **{key: rows.item(i) for key, rows in self._flags().items()}}
 
@@ -153,14 +164,17 @@ class Env(_Named, _Env):
     options: of the task, as `redman tasks NAME` prints them.
     action_repeat: control steps of a step, whose rewards and costs are summed; "task": as the task's learner decides.
     center: what an action of 0 does: "initial" takes the pose with which the task's learner begins.
+    shield: True, or a dict of the options of a redman.Shield, its budgets, seed and threads. shield_policy: its first backup, a
+    policy, its file or run folder, or "trained", which holds an action for as many control steps as a step has.
     named: observations are a dict with an entry for each field.
     """
 
     def __init__(self, task: str, *, seed: Optional[int] = None, options: Optional[Mapping[str, Any]] = None,
                  render_mode: Optional[str] = None, camera: Optional[str] = None, width: int = 320, height: int = 240,
-                 action_repeat: Union[int, str] = 1, center: Center = None, named: bool = False) -> None:
+                 action_repeat: Union[int, str] = 1, center: Center = None, named: bool = False, shield: Shielding = None,
+                 shield_policy: Optional[Backup] = None) -> None:
         worlds = Worlds(task, 1, seed=seed, options=options, action_repeat=action_repeat, center=center,
-                        camera=camera, width=width, height=height)
+                        camera=camera, width=width, height=height, shield=shield, shield_policy=shield_policy)
         self.observation_space, self.action_space = self._begin(worlds, render_mode, named)
 
     def reset(self, *, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None) -> tuple[Any, Info]:
@@ -183,7 +197,7 @@ class Env(_Named, _Env):
         return self._pictured(0) if self.render_mode else None
 
     def close(self) -> None:
-        self.pool.close()
+        self.worlds.close()
         super().close()
 
 
@@ -204,13 +218,14 @@ class VectorEnv(_Named, _VectorEnv):
                  options: Optional[Mapping[str, Any]] = None, threads: int = 0, autoreset_mode: Any = None,
                  copy: bool = True, render_mode: Optional[str] = None, camera: Optional[str] = None, width: int = 320,
                  height: int = 240, action_repeat: Union[int, str] = 1, center: Center = None,
-                 named: bool = False, max_episode_steps: Optional[int] = None) -> None:
+                 named: bool = False, max_episode_steps: Optional[int] = None, shield: Shielding = None,
+                 shield_policy: Optional[Backup] = None) -> None:
         mode = getattr(autoreset_mode, "value", autoreset_mode) or ("SameStep" if _OLD else "NextStep")
         if mode not in _MODES:
             raise ArgumentError(f"autoreset_mode: {', '.join(_MODES)}, not {mode}")
         worlds = Worlds(task, num_envs, seed=seed, autoreset=_MODES[mode], options=options, threads=threads,
                         action_repeat=action_repeat, center=center, camera=camera, width=width, height=height,
-                        senses=_NO_LAST_LOOK if mode == "SameStep" else "")
+                        shield=shield, shield_policy=shield_policy, senses=_NO_LAST_LOOK if mode == "SameStep" else "")
         if max_episode_steps not in (None, worlds.max_episode_steps):  # what make_vec hands on of a spec is our own
             raise ArgumentError(f"max_episode_steps: {max_episode_steps}, but an episode has {worlds.max_episode_steps} "
                                 "steps; options={'max_steps': n} makes it n control steps")
@@ -264,7 +279,7 @@ class VectorEnv(_Named, _VectorEnv):
         told = self._told()
         for key, values in told.items():
             if self.mode == "SameStep" or key not in self._flags():  # else those rows are the reset's own
-                values[began] = 0
+                values[began] = "" if values.dtype == object else 0
         return told
 
     def _infos(self, was_ended: Array) -> dict[str, Any]:
@@ -286,10 +301,10 @@ class VectorEnv(_Named, _VectorEnv):
         return infos
 
     def _rows(self, told: dict[str, Array], here: Array) -> Info:
-        """The rows with a mask of where they are, 0 elsewhere."""
+        """The rows with a mask of where they are, 0 or None elsewhere."""
         rows: Info = {}
         for key, values in told.items():
-            if self._old and values.ndim > 1:
+            if (self._old and values.ndim > 1) or values.dtype == object:
                 rows[key] = _objects(here, lambda i, values=values: values[i])
             else:
                 mask = here.reshape(-1, *[1] * (values.ndim - 1))
@@ -316,13 +331,18 @@ class VectorEnv(_Named, _VectorEnv):
 
     def close_extras(self, **_: Any) -> None:
         if hasattr(self, "worlds"):  # it is also called for what was never made
-            self.pool.close()
+            self.worlds.close()
 
     def __enter__(self) -> VectorEnv:
         return self
 
     def __exit__(self, *_: object) -> None:
         self.close()
+
+
+def shielded_of(worlds: Worlds, i: int) -> Info:
+    """What infos say of the shield in one world."""
+    return {key: rows[i].copy() if rows.ndim > 1 else rows.item(i) for key, rows in worlds.shielded().items()}
 
 
 def _objects(where: Array, make: Any) -> Array:

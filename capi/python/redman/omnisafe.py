@@ -61,7 +61,8 @@ _IDS: dict[str, tuple[str, _Settings]] = {
 class Redman(CMDP):
     """num_envs worlds of a task; an ended episode begins anew in the same step.
 
-    settings: options, action_repeat, center, threads, as redman.gym.VectorEnv has them, over those of the id.
+    settings: options, action_repeat, center, threads, shield, shield_policy, as redman.gym.VectorEnv has them, over those of the
+    id. Under a shield an info has "applied" and "intervened" as tensors, and "shield", a list of texts.
     camera_name and camera_id are what OmniSafe's evaluator gives (its default "track" is the task's first camera).
     Actions are bounded by -1 and 1 about `center` too.
     """
@@ -100,14 +101,14 @@ class Redman(CMDP):
         """New episodes everywhere. There are no options of a reset."""
         self._worlds.no_options(options)
         self._worlds.reset(seed)
-        return self._tensor(self._worlds.obs), self._flags()
+        return self._tensor(self._worlds.obs), {**self._flags(), **self._shielded(began=True)}
 
     def step(self, action: Any) -> tuple[Any, ...]:
         """Observation, reward, cost, terminated, truncated, info; rows of one world without the axis of worlds."""
         w = self._worlds
         w.act(action.detach().cpu().numpy().reshape(w.action.shape))
         w.pool.step()
-        info = self._flags()
+        info = {**self._flags(), **self._shielded()}
         ended = w.terminated | w.truncated
         if ended.any():
             info["final_observation"] = self._tensor(w.final_obs)
@@ -120,6 +121,18 @@ class Redman(CMDP):
         return {key: torch.from_numpy(rows.astype(np.int64))
                 for key, rows in (("status", w.status), ("episode_status", w.episode_status))}
 
+    def _shielded(self, began: bool = False) -> dict[str, Any]:
+        """What the shield did in each world; nothing yet where they have begun."""
+        told = self._worlds.shielded()
+        if not told:
+            return {}
+        applied, intervened, names = told.values()
+        one = self._num_envs == 1
+        if began:
+            applied, intervened, names = np.zeros_like(applied), np.zeros_like(intervened), np.full_like(names, "")
+        return {"applied": self._tensor(applied), "intervened": torch.from_numpy(intervened[0:1] if one else intervened),
+                "shield": names.tolist()}
+
     def _tensor(self, rows: Array) -> Any:
         """A copy: OmniSafe keeps tensors of earlier steps."""
         return torch.tensor(rows if self._num_envs > 1 else rows[0], dtype=torch.float32, device=self._device)
@@ -129,7 +142,7 @@ class Redman(CMDP):
         return self._worlds.render()
 
     def close(self) -> None:
-        self._worlds.pool.close()
+        self._worlds.close()
 
 
 def register(name: str, task: str, **settings: Any) -> str:

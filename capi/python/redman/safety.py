@@ -7,7 +7,8 @@
 Every task has the id SafetyRedman<Task>-v0, and Safety<Task>-v0 too where Safety-Gymnasium has no such id of its own:
 SafetyPointGoal1-v0 and eleven more are its own environments, not ours.
 
-info names the costs as Safety-Gymnasium does: cost_sum is the task's own (column 0), cost_<name> every other. Env and
+info names the costs as Safety-Gymnasium does: cost_sum is the task's own (column 0), cost_<name> every other. shield=True is
+that of redman.gym. Env and
 VectorEnv need Gymnasium alone, or nothing; the ids need Safety-Gymnasium. VectorEnv ends as SafetySyncVectorEnv does:
 a new episode in the same step, info["final_observation"] and info["final_info"].
 """
@@ -35,13 +36,15 @@ class _Told:
         w = self.worlds
         costs = w.cost.T.astype(np.float64)
         return {"cost_sum": costs[0], **{f"cost_{name}": c for name, c in zip(self.cost_names[1:], costs[1:])},
-                "success": w.success.copy(), **{key: rows.astype(np.int64) for key, rows in self._flags().items()}}
+                "success": w.success.copy(), **{key: rows.astype(np.int64) for key, rows in self._flags().items()},
+                **w.shielded()}
 
     def _told_of(self, i: int) -> gym.Info:
         w = self.worlds
         costs = w.cost[i].tolist()
         return {"cost_sum": costs[0], **{f"cost_{name}": c for name, c in zip(self.cost_names[1:], costs[1:])},
-                "success": w.success.item(i), **{key: rows.item(i) for key, rows in self._flags().items()}}
+                "success": w.success.item(i), **{key: rows.item(i) for key, rows in self._flags().items()},
+                **gym.shielded_of(w, i)}
 
 
 class Env(_Told, gym.Env):

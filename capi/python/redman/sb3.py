@@ -8,7 +8,7 @@
     PPO("MlpPolicy", env, **redman.sb3.ppo_kwargs("hand_over_safe_finger")).learn(500_000)
 
 Its learners know no costs: each info has "cost", "costs", "success", "status" and "episode_status" as in redman.gym, and
-penalty=w takes w times the cost from the reward. The info of an episode that ended has "episode" {r, l, t}, as Monitor
+penalty=w takes w times the cost from the reward; shield=True puts actions under a shield as there. The info of an episode that ended has "episode" {r, l, t}, as Monitor
 writes it, "is_success" (there was one) and "episode_cost", the sum of each cost by name. CostCallback logs those sums:
 learn(500_000, callback=redman.sb3.CostCallback()) adds rollout/ep_cost_mean/<name> to what is logged.
 """
@@ -25,6 +25,7 @@ from ._defaults import Defaults, defaults
 from ._error import ArgumentError
 from ._pool import Pool
 from ._rows import Array
+from ._shield import Backup, Shield, Shielding
 from ._worlds import Center, Worlds
 
 try:
@@ -53,12 +54,13 @@ class VecEnv(_VecEnv):
     def __init__(self, task: str, num_envs: int = 1, *, seed: Optional[int] = None,
                  options: Optional[Mapping[str, Any]] = None, threads: int = 0, render_mode: Optional[str] = None,
                  camera: Optional[str] = None, width: int = 320, height: int = 240,
-                 action_repeat: Union[int, str] = 1, center: Center = None, penalty: float = 0.0) -> None:
+                 action_repeat: Union[int, str] = 1, center: Center = None, penalty: float = 0.0,
+                 shield: Shielding = None, shield_policy: Optional[Backup] = None) -> None:
         if render_mode not in (None, "rgb_array"):
             raise ArgumentError(f'render_mode: None or "rgb_array", not {render_mode!r}')
         self.worlds = Worlds(task, num_envs, seed=seed, autoreset="same_step", options=options, threads=threads,
                              action_repeat=action_repeat, center=center, camera=camera, width=width, height=height,
-                             senses=_NO_LAST_LOOK)
+                             shield=shield, shield_policy=shield_policy, senses=_NO_LAST_LOOK)
         self.render_mode, self.penalty = render_mode, penalty
         self.fields, self.cost_names = self.worlds.fields, self.worlds.cost_names
         super().__init__(num_envs, Box(self.worlds.obs_low, self.worlds.obs_high, dtype=np.float32),
@@ -67,6 +69,11 @@ class VecEnv(_VecEnv):
         self._began = time.time()
         self._return, self._length = np.zeros(num_envs), np.zeros(num_envs, np.int64)  # of the episodes so far
         self._costs, self._success = np.zeros((num_envs, self.pool.cost_dim)), np.zeros(num_envs, bool)
+
+    @property
+    def shield(self) -> Optional[Shield]:
+        """What looks at every action; None: nothing."""
+        return self.worlds.shield
 
     @property
     def pool(self) -> Pool:
@@ -81,7 +88,7 @@ class VecEnv(_VecEnv):
         self._reset_seeds()
         self._reset_options()
         w, no = self.worlds, np.zeros(self.num_envs, bool)
-        nothing = self._infos(np.zeros_like(w.cost), no, w.status, w.episode_status, no)
+        nothing = self._infos(np.zeros_like(w.cost), no, w.status, w.episode_status, no, self._nothing(w.shielded()))
         self.reset_infos: list[dict[str, Any]] = nothing
         for sums in (self._return, self._length, self._costs, self._success):
             sums[...] = 0
@@ -97,7 +104,7 @@ class VecEnv(_VecEnv):
         w.pool.step()
         costs, ended = w.cost.copy(), w.terminated | w.truncated
         reward = w.reward - self.penalty * costs[:, 0] if self.penalty else w.reward.copy()
-        infos = self._infos(costs, w.success, w.status, w.episode_status, w.truncated & ~w.terminated)
+        infos = self._infos(costs, w.success, w.status, w.episode_status, w.truncated & ~w.terminated, w.shielded())
         self._return += reward
         self._length += 1
         self._costs += costs
@@ -105,16 +112,24 @@ class VecEnv(_VecEnv):
         for i in np.flatnonzero(ended):
             infos[i]["terminal_observation"] = w.final_obs[i].copy()
             infos[i].update(self._finished(i))
-            self.reset_infos[i] = self._infos(np.zeros_like(costs[:1]), *np.zeros((4, 1), bool))[0]
+            no = np.zeros(1, bool)
+            self.reset_infos[i] = self._infos(np.zeros_like(costs[:1]), no, no, no, no, self._nothing(w.shielded()))[0]
         return w.obs.copy(), reward.astype(np.float32, copy=False), ended, infos
 
     @staticmethod
-    def _infos(costs: Array, success: Array, status: Array, all_status: Array, cut: Array) -> list[dict[str, Any]]:
+    def _infos(costs: Array, success: Array, status: Array, all_status: Array, cut: Array,
+               shielded: Mapping[str, Array]) -> list[dict[str, Any]]:
         """What a step tells of each world."""
+        more = {key: list(rows) if rows.ndim > 1 else rows.tolist() for key, rows in shielded.items()}
         return [{"cost": cost, "costs": row, "success": won, "status": int(bits), "episode_status": int(all_bits),
-                 "TimeLimit.truncated": late}
-                for cost, row, won, bits, all_bits, late in zip(costs[:, 0].tolist(), costs, success.tolist(),
-                                                                status.tolist(), all_status.tolist(), cut.tolist())]
+                 "TimeLimit.truncated": late, **{key: values[i] for key, values in more.items()}}
+                for i, (cost, row, won, bits, all_bits, late) in enumerate(zip(
+                    costs[:, 0].tolist(), costs, success.tolist(), status.tolist(), all_status.tolist(), cut.tolist()))]
+
+    @staticmethod
+    def _nothing(shielded: Mapping[str, Array]) -> dict[str, Array]:
+        """What a reset tells of a shield."""
+        return {key: np.full_like(rows, "" if rows.dtype == object else 0) for key, rows in shielded.items()}
 
     def _finished(self, i: int) -> dict[str, Any]:
         """What the info of an ended episode has more; its sums begin anew."""
@@ -128,7 +143,7 @@ class VecEnv(_VecEnv):
 
     def close(self) -> None:
         """Ends the worlds."""
-        self.pool.close()
+        self.worlds.close()
 
     def get_images(self) -> list[Array]:
         """A picture [height][width][3] of each world."""
