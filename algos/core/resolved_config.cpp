@@ -97,7 +97,7 @@ MlpShape parse_shape(const char* key, const char* widths, Activation activation,
 Options read_limited_options(const AgentConfig& c, const AlgoInfo& algo) {
   Options o = read_options(c, algo);
   if (c.cost_dim == 0 || o.given("cost_limit")) return o;
-  if (same_name(o.text("shield_learn"), "cost"))  // column 0 counts refusals
+  if (kSharedRows.read(o).shield_learn == ShieldLearn::kCost)  // column 0 counts refusals
     o.set_default("cost_limit", 1.0);
   else if (c.cost_limits)
     o.set_default("cost_limit", c.cost_limits[0] < 0 ? -1.0 : c.cost_limits[0]);
