@@ -89,7 +89,7 @@ class Shielded {
       : agent_(agent), pool_(pool), shield_(shield), foresight_(agent) {
     before_.violations = pool.stats().violations;
     if (!shield) return;
-    if (agent.eyes().points)
+    if (agent.eyes().points && shield->predicts())
       fail(Code::kUnsupported, "shield: the agent's encoder needs points, which copies do not have");
     if (shield->steps() * pool.repeat() != agent.action_repeat())
       fail(Code::kArgument, "shield: its decisions last %d control steps, the agent's %d",
@@ -140,7 +140,8 @@ class Shielded {
     if (!shield_) return;
     const ShieldCounts& now = shield_->counts();
     const int64_t unproven = now.unproven - counts_.unproven;
-    out->refused = ranks.total(now.changed - counts_.changed + now.planned - counts_.planned + unproven);
+    out->refused = ranks.total(now.changed - counts_.changed + now.planned - counts_.planned + now.projected -
+                               counts_.projected + unproven);
     out->unproven = ranks.total(unproven);
     out->copied = ranks.total(now.copied - counts_.copied);
     shield_->forget_blocks();

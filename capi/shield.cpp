@@ -1,8 +1,11 @@
-// rdm_shield_*: a predictive shield over a pool's worlds, with policies as backups.
+// rdm_shield_*: a shield over a pool's worlds, with policies as backups; guards and the nearest action that keeps them.
 
 #include "capi/handles.hpp"
 
 #if RDM_WITH_SIM
+#include <cmath>
+#include <cstdio>
+
 #include "capi/shield.hpp"
 
 using namespace rdm;
@@ -11,6 +14,9 @@ using namespace rdm::capi;
 namespace {
 
 constexpr int32_t kMostSteps = 1000;
+
+static_assert(RDM_MAX_GUARDS == kMostGuards);
+static_assert(static_cast<int>(RDM_SHIELD_PROJECTED) == static_cast<int>(ShieldKind::kProjected));
 
 #if RDM_WITH_POLICY
 // Steps of the pool that a policy holds an action for.
@@ -48,6 +54,46 @@ void add_policy(rdm_shield*, const rdm_policy*) {
 #endif
 
 }  // namespace
+
+rdm_result rdm_project(const float* normals, const float* bounds, size_t count, size_t dim,
+                       const float* action, float* nearest) {
+  return call([&] {
+    if (count > kMostGuards) fail(Code::kRange, "count: %zu is outside [0, %d]", count, kMostGuards);
+    if (dim < 1 || dim > kMostEntries) fail(Code::kRange, "dim: %zu is outside [1, %d]", dim, kMostEntries);
+    if (count > 0) need(normals, "normals");
+    if (count > 0) need(bounds, "bounds");
+    need(action, "action");
+    need(nearest, "nearest");
+    const auto n = static_cast<int32_t>(count), width = static_cast<int32_t>(dim);
+    HalfSpace rows[kMostGuards];
+    for (size_t i = 0; i < count; ++i) {
+      char name[24];
+      std::snprintf(name, sizeof name, "normals: row %zu", i);
+      rows[i] = {normals + i * dim, bounds[i]};
+      check_half_space(rows[i], width, name);
+    }
+    for (size_t j = 0; j < dim; ++j)
+      if (!std::isfinite(action[j])) fail(Code::kArgument, "action: entry %zu is not finite", j);
+    if (!nearest_action(rows, n, width, action, nearest))
+      fail(Code::kArgument, "normals: no action keeps all %d rows", n);
+  });
+}
+
+rdm_result rdm_pool_guard_at(const rdm_pool* p, int32_t i, rdm_guard* io, float* normal) {
+  return call_on(p, [&] {
+    check_out(io, sizeof(rdm_guard), "io");
+    const int32_t dim = p->pool->task().action_dim();
+    Vector<float> row(static_cast<size_t>(dim));
+    Guard g;
+    if (!p->pool->guard_at(i, &g, row.data())) fail(Code::kRange, "i: the pool has no guard %d", i);
+    rdm_guard out{};
+    out.column = g.column;
+    out.entry = single_entry({row.data(), g.bound}, dim);
+    out.bound = g.bound;
+    if (normal) std::copy(row.begin(), row.end(), normal);
+    write_struct(io, out, sizeof(rdm_guard), "io");
+  });
+}
 
 rdm_result rdm_shield_config_init(rdm_shield_config* c, size_t size) {
   return call([&] { init_struct(c, size, sizeof(rdm_shield_config), rdm_shield_config{}, "c"); });
@@ -95,6 +141,20 @@ rdm_result rdm_shield_create(rdm_shield** out, const rdm_shield_config* c) {
 
 rdm_result rdm_shield_add_policy(rdm_shield* s, const rdm_policy* policy) {
   return call_on(s, [&] { add_policy(s, policy); });
+}
+
+rdm_result rdm_shield_add_guard(rdm_shield* s, const float* normal, float bound) {
+  return call_on(s, [&] {
+    need(normal, "normal");
+    s->shield->add_guard(normal, bound);
+  });
+}
+
+rdm_result rdm_shield_set_guard(rdm_shield* s, int32_t env, int32_t i, const float* normal, float bound) {
+  return call_on(s, [&] {
+    need(normal, "normal");
+    s->shield->set_guard(env, i, normal, bound);
+  });
 }
 
 void rdm_shield_destroy(rdm_shield* s) {
@@ -176,6 +236,7 @@ rdm_result rdm_shield_get_stats(const rdm_shield* s, rdm_shield_stats* io) {
     out.planned = c.planned;
     out.unproven = c.unproven;
     out.copied = c.copied;
+    out.projected = c.projected;
     write_struct(io, out, sizeof out, "io");
   });
 }

@@ -13,6 +13,7 @@ function half_of(name, parameters) {
   if (name ~ /^rdm_recording_/) return !sim && parameters ~ /rdm_pool/ ? "simulation" : sim || learn ? "" : "learning"
   if (name ~ /^rdm_agent_/ && parameters ~ /rdm_(pool|shield)/) return sim ? (learn ? "" : "learning") : "simulation"
   if (name ~ /^rdm_(task|robot|object|pool|planner|shield|map|sample|scene|contact|world|random)_/) return sim ? "" : "simulation"
+  if (name == "rdm_project") return sim ? "" : "simulation"
   if (name == "rdm_policy_update_from") return learn ? "" : "learning"
   if (name ~ /^rdm_(policy|actor)_/) return policy ? "" : "learning"
   if (name ~ /^rdm_(algo|agent|checkpoint)_/) return learn ? "" : "learning"

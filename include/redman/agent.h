@@ -178,7 +178,7 @@ typedef struct rdm_epoch {
   int64_t slowed;             /* decisions flagged RDM_STATUS_SLOWED */
   int64_t violations;         /* control steps in which column 0, or a cost with a limit by the
                                * task, was above 0; -1: not an epoch of rdm_agent_rollout */
-  int64_t refused;            /* decisions that a shield did not let through; -1: there was none */
+  int64_t refused;            /* decisions that a shield changed; -1: there was none */
   int64_t unproven;           /* of these, where nothing was known to be clean; -1: likewise */
   int64_t copied;             /* control steps of the shield's copies; -1: likewise */
 } rdm_epoch;

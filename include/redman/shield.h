@@ -1,4 +1,4 @@
-/* redman/shield.h: a predictive shield, under which no cost exceeds its budget. Experimental. */
+/* redman/shield.h: a shield, under which no cost exceeds its budget. Experimental. */
 #ifndef REDMAN_SHIELD_H
 #define REDMAN_SHIELD_H
 #include <redman/plan.h>
@@ -7,11 +7,42 @@
 extern "C" {
 #endif
 
-/* A shield stands between who proposes actions and a pool. It lets an action through only where an
- * exact copy of the world, going on by a known plan, keeps within the budget of every cost until
- * the episode ends; else another action takes its place. The rest of a plan is a plan again, so
- * what holds for the first decision of an episode holds for all of them: no cost exceeds its
- * budget, whatever is proposed.
+/* ---- guards: half spaces that actions are held to -------------------------------------------- */
+#define RDM_MAX_GUARDS 32 /* half spaces of an action, at most */
+/* Costs that are functions of the action alone are half spaces: normal . action <= bound. The
+ * nearest action that keeps them is a perfect shield, without copies: with cost_mode=command of the
+ * throws it is a clip of three entries. A learned cost that is linear in the action,
+ * c(s) + g(s) . a <= d, is such a half space too (Dalal et al. 2018): normal g, bound d - c. */
+typedef struct rdm_guard { /* a half space of a pool's actions, clipped to [-1, 1] */
+  uint32_t struct_size;      /* in: bytes */
+  int32_t column;            /* of the cost that is 0 in every step while all guards of that column
+                              * are kept */
+  int32_t entry;             /* the only entry of the normal that is not 0; -1: there are several */
+  float bound;               /* of normal . action, at most */
+} rdm_guard;
+/* Guard i that the pool's task declares, and its normal [action_dim]; NULL: not asked for. RANGE
+ * past the end: at 0 for a task whose costs are of states, and wherever what is done is not what
+ * the action says: with a measured angle in the place of the command, action_average below 1,
+ * another control than position, delayed actions. */
+RDM_API rdm_result rdm_pool_guard_at(const rdm_pool *pool, int32_t i, rdm_guard *io, float *normal);
+/* nearest [dim], of all in [-1, 1] with normals [count][dim] . nearest <= bounds [count] the one
+ * nearest to action [dim] in the Euclidean norm; the two may be the same array. Rows of a single
+ * entry are kept to the bit, others to the rounding of a float (2^-24 of the sum of their entries'
+ * sizes). Neither pool nor memory is needed. ARGUMENT for a row of zeros, for what is not finite,
+ * and where no action keeps all rows; RANGE for a count above RDM_MAX_GUARDS and a dim outside
+ * [1, 1024]. */
+RDM_API rdm_result rdm_project(const float *normals, const float *bounds, size_t count, size_t dim,
+                               const float *action, float *nearest);
+
+/* ---- the shield ------------------------------------------------------------------------------ */
+/* A shield stands between who proposes actions and a pool. What is proposed first goes to the
+ * nearest action that keeps the guards: the pool's of each cost whose budget is 0, unless option
+ * project is false, and the host's own. That goes through only where an exact copy of the world,
+ * going on by a known plan, keeps within the budget of every cost until the episode ends; else
+ * another action takes its place. The rest of a plan is a plan again, so what holds for the first
+ * decision of an episode holds for all of them: no cost exceeds its budget, whatever is proposed.
+ * With option predict=false guards alone are kept: no copies are made, and costs that have none may
+ * come. What keeps all guards, and is clean, goes through to the bit.
  *
  *   rdm_shield_config c;  rdm_shield *shield;
  *   rdm_shield_config_init(&c, sizeof c);
@@ -37,9 +68,9 @@ extern "C" {
  * them, once a control step. Policies that see points cannot be backups.
  *
  * Price: for n worlds, n (block + 1 + tries + 1) copies in memory, with option copies n K (2 + 1 +
- * tries); time is that of the steps that
- * copies take (rdm_shield_stats.copied). No heap after creation. One thread at a time. Same seed,
- * same calls: the same bytes, for any threads. */
+ * tries), none with predict=false; time is that of the steps that copies take
+ * (rdm_shield_stats.copied). No heap but in creation and rdm_shield_add_guard. One thread at a
+ * time. Same seed, same calls: the same bytes, for any threads. */
 typedef struct rdm_shield rdm_shield; /* handle */
 typedef struct rdm_shield_config { /* what a shield is made from */
   uint32_t struct_size;      /* bytes, set by rdm_shield_config_init */
@@ -70,14 +101,16 @@ enum rdm_shield_kind { /* what a shield did with a proposed action */
   RDM_SHIELD_OWN = 0,      /* it went through */
   RDM_SHIELD_CHANGED = 1,  /* refused: another one, from which the way is clean */
   RDM_SHIELD_PLAN = 2,     /* refused: the next action of the plan that was made before */
-  RDM_SHIELD_UNPROVEN = 3  /* nothing that was tried is clean: with option unproven=least what
+  RDM_SHIELD_UNPROVEN = 3, /* nothing that was tried is clean: with option unproven=least what
                             * exceeds the budgets least */
+  RDM_SHIELD_PROJECTED = 4 /* it broke guards: the nearest one that keeps them went through */
 };
 typedef struct rdm_shield_row { /* what was done in a world's last decision, and why */
   uint32_t struct_size;      /* in: bytes */
   int32_t kind;              /* RDM_SHIELD_* */
   int32_t column;            /* of what was refused: the cost that it would have met, -1: it was
-                              * not, or the copy diverged */
+                              * not, or the copy diverged; of what was projected: of the guard that
+                              * it broke most, -1: the host's own */
   int32_t ahead;             /* control steps until that, 0: nothing was refused */
   int32_t backup;            /* that the plan goes on by: a policy's number, then zero, then hold,
                               * of those that it has; -1: no other way was looked for */
@@ -93,6 +126,7 @@ typedef struct rdm_shield_stats { /* counts since creation, of all worlds */
   int64_t planned;           /* of RDM_SHIELD_PLAN */
   int64_t unproven;          /* of RDM_SHIELD_UNPROVEN */
   int64_t copied;            /* control steps that copies took */
+  int64_t projected;         /* decisions of RDM_SHIELD_PROJECTED */
 } rdm_shield_stats;
 /* Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first
  * version's. */
@@ -102,13 +136,24 @@ RDM_API rdm_result rdm_shield_config_init(rdm_shield_config *c, size_t size);
 RDM_API rdm_result rdm_shield_create(rdm_shield **out, const rdm_shield_config *c);
 /* One backup more, behind the policies that it has: its mean actions. It must outlive the shield.
  * VERSION_MISMATCH for one that does not fit the pool, ARGUMENT for one that holds its actions for
- * another time than a decision, UNSUPPORTED for one that sees points, RANGE from the seventh on or
- * where option tries is too small. Plans stay. */
+ * another time than a decision and with predict=false, UNSUPPORTED for one that sees points, RANGE
+ * from the seventh on or where option tries is too small. Plans stay. */
 RDM_API rdm_result rdm_shield_add_policy(rdm_shield *shield, const rdm_policy *policy);
+/* One guard more, the host's own, of all worlds: normal [action_dim] . action <= bound, copied.
+ * ARGUMENT for a row of zeros, what is not finite, and where no action keeps it beside those that
+ * there are; RANGE for one more than RDM_MAX_GUARDS: nothing changes then. Plans are forgotten. */
+RDM_API rdm_result rdm_shield_add_guard(rdm_shield *shield, const float *normal, float bound);
+/* The host's own guard i, counted from the first that was added, of world env alone from now on:
+ * normal [action_dim], as a model says it of the state that the world is in. No heap. The errors of
+ * rdm_shield_add_guard: the world's guards stay then. Its plan is forgotten where something
+ * differs. */
+RDM_API rdm_result rdm_shield_set_guard(rdm_shield *shield, int32_t env, int32_t i,
+                                        const float *normal, float bound);
 RDM_API void rdm_shield_destroy(rdm_shield *shield);            /* NULL is fine */
 RDM_API const char *rdm_shield_error(const rdm_shield *shield); /* last failure on this handle; ""
                                                                  * at first */
-/* Option i of shields: block, look, tries, rounds, copies, noise, choose, zero, hold, unproven.
+/* Option i of shields: block, look, tries, rounds, copies, noise, choose, zero, hold, unproven,
+ * project, predict.
  * RANGE past the end. */
 RDM_API rdm_result rdm_shield_option_at(int32_t i, rdm_option_spec *io);
 /* All options as text [capacity] of lines key=value: given as settings they make a shield of the
@@ -121,7 +166,8 @@ RDM_API rdm_result rdm_shield_get_settings(const rdm_shield *shield, char *text,
  * number of worlds of the one that the shield was made for, else ARGUMENT. The action is then held
  * for config.steps steps of the pool. A world whose episode began anew, or whose state was set, is
  * noticed. STATE for a world without an episode, and for one in which nothing that was tried is
- * clean, which the text names: nothing is written then. */
+ * clean, which the text names, and with predict=false where there are no guards: nothing is written
+ * then. */
 RDM_API rdm_result rdm_shield_act(rdm_shield *shield, const rdm_pool *pool, const uint8_t *mask,
                                   const float *proposed, float *action);
 /* What was done in the last decision of world env. */
@@ -134,9 +180,9 @@ RDM_API rdm_result rdm_shield_get_plan(const rdm_shield *shield, const rdm_pool 
 RDM_API rdm_result rdm_shield_get_stats(const rdm_shield *shield, rdm_shield_stats *io);
 /* Forgets the plans of the worlds whose mask [num_envs] is not 0; NULL: all. */
 RDM_API rdm_result rdm_shield_reset(rdm_shield *shield, const uint8_t *mask);
-/* Plans, noise and counts as bytes [capacity]; NULL asks for the size. A shield of the same config
- * that reads them goes on with the same bytes, beside a pool that was set to the state of that
- * moment. */
+/* Plans, noise, counts and the host's guards as bytes [capacity]; NULL asks for the size. A shield
+ * of the same config with as many guards that reads them goes on with the same bytes, beside a pool
+ * that was set to the state of that moment. */
 RDM_API rdm_result rdm_shield_write_state(const rdm_shield *shield, void *bytes, size_t capacity,
                                           size_t *size);
 /* Of bytes [size]. FORMAT for bytes that are not whole, or of another shield: nothing changes. */
@@ -148,8 +194,8 @@ RDM_API rdm_result rdm_shield_read_state(rdm_shield *shield, const void *bytes, 
  * return ARGUMENT; it must outlive the agent, or be taken off before. Its first backup is then what
  * the agent itself would do without noise. The agent's noise is foreseen for option block decisions
  * at once: where statistics of observations have moved since, what was foreseen runs and is learned
- * from, with its own density. What is learned from what it refuses is the agent's option
- * shield_learn:
+ * from, with its own density. What is learned from what it refuses, or projects, is the agent's
+ * option shield_learn:
  *
  *   own      the agent's own action and density, with what came of the one that ran
  *   applied  the action that ran, with its density

@@ -25,11 +25,43 @@ inline rdm_shield_config shield_config(const Pool& pool, const Policy* policy = 
   return c;
 }
 
+// A half space that a pool's task declares: normal . action <= bound keeps a cost column at 0.
+struct Guard {
+  rdm_guard info;
+  std::vector<float> normal;  // [action_dim]
+};
+inline std::vector<Guard> guards(const Pool& pool) {
+  std::vector<Guard> out;
+  Guard g{sized<rdm_guard>(), std::vector<float>(static_cast<size_t>(pool.spec().action_dim))};
+  for (int32_t i = 0;; ++i) {
+    const rdm_result r = rdm_pool_guard_at(pool.get(), i, &g.info, g.normal.data());
+    if (r == RDM_ERROR_RANGE) return out;
+    check(r);
+    out.push_back(g);
+  }
+}
+
+// The action nearest to one of `dim` entries that keeps normals [bounds.size()][dim].
+inline std::vector<float> project(const std::vector<float>& normals,
+                                  const std::vector<float>& bounds, const float* action,
+                                  size_t dim) {
+  std::vector<float> out(dim);
+  check(rdm_project(normals.data(), bounds.data(), bounds.size(), dim, action, out.data()));
+  return out;
+}
+
 class Shield {
  public:
   explicit Shield(const rdm_shield_config& config) : handle_(made(rdm_shield_create, &config)) {}
   rdm_shield* get() const { return handle_.get(); }
   void add(const Policy& policy) { check(rdm_shield_add_policy(get(), policy.get())); }  // borrowed
+  // normal [action_dim] . action <= bound, of all worlds; then guard i of one world.
+  void add_guard(const float* normal, float bound) {
+    check(rdm_shield_add_guard(get(), normal, bound));
+  }
+  void set_guard(int32_t env, int32_t i, const float* normal, float bound) {
+    check(rdm_shield_set_guard(get(), env, i, normal, bound));
+  }
   // action [num_envs][action_dim] of worlds in the mask (null: all) for what is proposed.
   void act(const Pool& pool, const float* proposed, float* action, const uint8_t* mask = nullptr) {
     check(rdm_shield_act(get(), pool.get(), mask, proposed, action));

@@ -223,6 +223,9 @@ int32_t Pool::obs_dim() const {
 int32_t Pool::cost_dim() const {
   return impl_->cost_dim;
 }
+bool Pool::guard_at(int32_t i, Guard* guard, float* normal) const {
+  return !impl_->disturbance.delays_actions() && impl_->task->guard_at(i, guard, normal);
+}
 int32_t Pool::repeat() const {
   return impl_->repeat;
 }

@@ -51,6 +51,12 @@ struct Verdict {
   bool terminated = false, success = false;
 };
 
+// A half space of clipped actions, normal . a <= bound.
+struct Guard {
+  int32_t column = 0;  // of the cost that is 0 within it
+  float bound = 0;
+};
+
 // One task with its options laid in: constant after creation, shared by all worlds of a pool.
 class Task {
  public:
@@ -87,6 +93,10 @@ class Task {
   virtual void hold_action(float* action) const = 0;
   // Mean action that a new policy starts from. [action_dim]
   virtual void initial_mean(float* action) const = 0;
+  // Row i of the half spaces that costs of the action alone leave: while all those of a column are kept, from an
+  // episode's first step on, its cost is 0 exactly, whatever else happens. normal [action_dim]. False: there are no
+  // more.
+  virtual bool guard_at(int32_t, Guard*, float*) const { return false; }
   // Entry of the action that drives a joint of the scene; -1: none, or nobody knows.
   virtual int32_t action_of(int32_t) const { return -1; }
 };

@@ -45,7 +45,11 @@ constexpr auto kRows = option_rows<ShieldOptions>(
     row<&ShieldOptions::hold>(flag_option("hold", true, "the hold action for ever is a backup")),
     row<&ShieldOptions::least, false, true>(
         basic(text_option("unproven", "error", "error|least",
-                          "a world in which nothing is clean: an error, or what exceeds budgets least"))));
+                          "a world in which nothing is clean: an error, or what exceeds budgets least"))),
+    row<&ShieldOptions::project>(flag_option(
+        "project", true, "what is proposed goes to the nearest action that keeps the task's guards first")),
+    row<&ShieldOptions::predict>(
+        basic(flag_option("predict", true, "actions are tried in copies; false: guards alone are kept"))));
 
 size_t sz(int32_t n) {
   return static_cast<size_t>(n);
@@ -80,16 +84,51 @@ Shield::Shield(const ShieldConfig& c) : hooks_(c.hooks), steps_(c.steps) {
   dim_ = pool.task().action_dim();
   obs_ = pool.obs_dim();
   costs_ = pool.cost_dim();
+  options_hash_ = pool.options_hash();
+  layout_ = layout_hash(pool.task());
   num_own_ = set_.zero + set_.hold;
-  need_tries(num_own_);
+  read_budgets(c.budgets);
+  guards_ = Guards(n_, dim_);
+  if (set_.project) declare_guards(pool);
+  stride_ = steps_ * pool.repeat();
+  if (set_.predict) make_copies_of(pool, c.num_threads);
+  try {
+    Arena measure;
+    carve(measure);
+    arena_ = Arena(hooks_, measure.used());
+    carve(arena_);
+  } catch (...) {
+    end_copies();
+    throw;
+  }
+  pool.task().hold_action(hold_);
+  for (int32_t i = 0; i < n_; ++i) {
+    noise_[i] = Stream(c.seed, static_cast<uint32_t>(i), Purpose::kShield);
+    drawn_[i] = Stream(c.seed, static_cast<uint32_t>(i), Purpose::kShieldDraw);
+  }
+  std::fill_n(rows_, n_, ShieldRow{});
+}
+
+void Shield::read_budgets(const double* budgets) {
   bool any = false;
   for (int32_t k = 0; k < costs_; ++k) {
-    budget_[k] = c.budgets ? c.budgets[k] : k == 0 ? 0 : -1;
+    budget_[k] = budgets ? budgets[k] : k == 0 ? 0 : -1;
     if (std::isnan(budget_[k])) fail(Code::kArgument, "budgets: entry %d is not a number", k);
     any |= budget_[k] >= 0;
   }
   if (!any) fail(Code::kArgument, "shield: no cost has a budget");
-  stride_ = steps_ * pool.repeat();
+}
+
+// What may be spent is not to be kept at 0.
+void Shield::declare_guards(const Pool& pool) {
+  Vector<float> normal(sz(dim_));
+  Guard g;
+  for (int32_t i = 0; pool.guard_at(i, &g, normal.data()); ++i)
+    if (budget_[g.column] == 0) guards_.add(g.column, normal.data(), g.bound);
+}
+
+void Shield::make_copies_of(const Pool& pool, int32_t threads) {
+  need_tries(num_own_);
   const int32_t whole = (pool.task().max_steps() + stride_ - 1) / stride_;
   length_ = set_.look > 0 ? std::min(whole, set_.block + set_.look + 1) : whole;
   const int64_t ways = int64_t{n_} * worlds_, branches = ways * set_.tries;
@@ -97,25 +136,19 @@ Shield::Shield(const ShieldConfig& c) : hooks_(c.hooks), steps_(c.steps) {
     fail(Code::kRange, "shield: %d worlds with blocks of %d, and %d tries of %d decisions, are too many", n_,
          set_.block, set_.tries, length_);
   try {
-    first_.make(pool, n_ * worlds_, c.num_threads, hooks_);
-    tried_.make(pool, n_ * set_.tries * worlds_, c.num_threads, hooks_);
-    kept_ = make_copies(pool, n_ * worlds_ * (set_.block + 1), c.num_threads, hooks_);
-    Arena measure;
-    carve(measure);
-    arena_ = Arena(hooks_, measure.used());
-    carve(arena_);
+    first_.make(pool, n_ * worlds_, threads, hooks_);
+    tried_.make(pool, n_ * set_.tries * worlds_, threads, hooks_);
+    kept_ = make_copies(pool, n_ * worlds_ * (set_.block + 1), threads, hooks_);
   } catch (...) {
-    first_.end();
-    tried_.end();
-    Pool::destroy(kept_);
+    end_copies();
     throw;
   }
-  first_.pool().task().hold_action(hold_);
-  for (int32_t i = 0; i < n_; ++i) {
-    noise_[i] = Stream(c.seed, static_cast<uint32_t>(i), Purpose::kShield);
-    drawn_[i] = Stream(c.seed, static_cast<uint32_t>(i), Purpose::kShieldDraw);
-  }
-  std::fill_n(rows_, n_, ShieldRow{});
+}
+
+void Shield::end_copies() {
+  first_.end();
+  tried_.end();
+  Pool::destroy(kept_);
 }
 
 void Shield::need_tries(int32_t backups) const {
@@ -124,16 +157,28 @@ void Shield::need_tries(int32_t backups) const {
 }
 
 void Shield::add_policy(ShieldPolicy* policy) {
+  if (!set_.predict)
+    fail(Code::kArgument, "policy: with predict=false nothing is tried, so there is no backup");
   if (num_policies_ == kMostPolicies) fail(Code::kRange, "shield: it has %d policies already", kMostPolicies);
   need_tries(num_own_ + 1);
   policies_[num_policies_++] = policy;
   ++num_own_;
 }
 
+void Shield::add_guard(const float* normal, float bound) {
+  const FpMode fp;
+  const HostScope scope(hooks_);
+  guards_.add(-1, normal, bound);
+  forget(nullptr);
+}
+
+void Shield::set_guard(int32_t env, int32_t i, const float* normal, float bound) {
+  const FpMode fp;
+  if (guards_.set(env, i, normal, bound)) plans_[env].length = 0;
+}
+
 Shield::~Shield() {
-  first_.end();
-  tried_.end();
-  Pool::destroy(kept_);
+  end_copies();
 }
 
 Shield* Shield::create(const ShieldConfig& config) {
@@ -149,24 +194,27 @@ void Shield::destroy(Shield* s) {
 
 void Shield::carve(Arena& arena) {
   const size_t n = sz(n_), dim = sz(dim_), length = sz(length_), branches = n * sz(set_.tries) * sz(worlds_);
-  first_.carve(arena);
-  tried_.carve(arena);
   zero_ = arena.make<float>(dim);
   hold_ = arena.make<float>(dim);
+  aim_ = arena.make<float>(n * dim);
   plans_ = arena.make<Plan>(n);
   rows_ = arena.make<ShieldRow>(n);
-  inquiries_ = arena.make<Inquiry>(n);
   own_ = arena.make<float>(n * dim);
   refused_ = arena.make<float>(n * dim);
   moved_ = arena.make<uint8_t>(n);
+  noise_ = arena.make<Stream>(n);
+  drawn_ = arena.make<Stream>(n);
+  if (!set_.predict) return;
+  first_.carve(arena);
+  tried_.carve(arena);
+  inquiries_ = arena.make<Inquiry>(n);
+  foreseen_own_ = arena.make<float>(n * sz(set_.block) * dim);
   went_ = arena.make<uint8_t>(n * sz(worlds_));
   plan_ = arena.make<float>(n * length * dim);
   way_ = arena.make<float>(n * length * dim);
   tail_ = arena.make<float>(n * length * dim);
   branch_ = arena.make<float>(branches * length * dim);
   bound_ = arena.make<double>(n * sz(costs_));
-  noise_ = arena.make<Stream>(n);
-  drawn_ = arena.make<Stream>(n);
   foreseen_ = arena.make<Stream>(n);
   offset_ = arena.make<float>(n * dim);
   obs_rows_ = arena.make<float>(branches * sz(obs_));
@@ -219,16 +267,23 @@ bool Shield::follows(const Pool& pool, int32_t env, const float* proposed, bool 
   p.course = pool.course(env);
   p.adopt = 0;
   if (set_.copies > 0) return false;
-  return (foreseen && at < p.block) || same(proposed, plan_ + plan_of(env) + row_of(at), dim_) ||
-         (at == p.refused && same(proposed, refused_ + row_of(env), dim_));
+  return (foreseen && at < p.block) || same(aim_ + row_of(env), plan_ + plan_of(env) + row_of(at), dim_) ||
+         (at == p.refused && same(proposed + row_of(env), refused_ + row_of(env), dim_));
+}
+
+void Shield::check_pool(const Pool& pool) const {
+  if (set_.predict)
+    first_.pool().need_same(pool, "pool", "the shield");
+  else if (pool.options_hash() != options_hash_ || pool.task().action_dim() != dim_)
+    fail(Code::kArgument, "pool: its task or options are not those that the shield was made for");
+  if (pool.config().num_envs != n_)
+    fail(Code::kArgument, "pool: it has %d worlds, the shield is for %d", pool.config().num_envs, n_);
 }
 
 void Shield::act(const Pool& pool, const uint8_t* mask, const float* proposed, Foresight* foresight,
                  float* action, bool unneeded) {
   const FpMode fp;
-  first_.pool().need_same(pool, "pool", "the shield");
-  if (pool.config().num_envs != n_)
-    fail(Code::kArgument, "pool: it has %d worlds, the shield is for %d", pool.config().num_envs, n_);
+  check_pool(pool);
   const auto named = [&](int32_t env) { return !mask || mask[env]; };
   for (int32_t env = 0; env < n_; ++env) {
     if (!named(env)) continue;
@@ -237,19 +292,31 @@ void Shield::act(const Pool& pool, const uint8_t* mask, const float* proposed, F
     for (int32_t j = 0; j < dim_; ++j)
       if (!std::isfinite(row[j])) fail(Code::kArgument, "proposed: row %d, entry %d is not finite", env, j);
   }
-  order_backups(foresight);
-  if (num_order_ == 0) fail(Code::kState, "shield: it has no backup: a policy, zero=true or hold=true");
-  num_asked_ = 0;
+  if (!set_.predict && guards_.count() == 0)
+    fail(Code::kState,
+         "shield: with predict=false it has nothing to keep: task %s declares no guards for these "
+         "options and budgets, and none was added",
+         task_at(pool.task_index()).name);
   for (int32_t env = 0; env < n_; ++env)
-    if (named(env) && !follows(pool, env, proposed + row_of(env), foresight != nullptr))
-      inquiries_[num_asked_++].env = env;
-  if (num_asked_ > 0) inquire(pool, proposed, unneeded);
+    if (named(env)) guards_.project(env, proposed + row_of(env), aim_ + row_of(env));
+  num_asked_ = 0;
+  if (set_.predict) predict(pool, mask, proposed, foresight, unneeded);
   for (int32_t asked = 0, env = 0; env < n_; ++env) {
     if (!named(env)) continue;
     const bool now = asked < num_asked_ && inquiries_[asked].env == env;
     asked += now;
     give(pool, env, proposed, now, foresight != nullptr, action);
   }
+}
+
+void Shield::predict(const Pool& pool, const uint8_t* mask, const float* proposed, Foresight* foresight,
+                     bool unneeded) {
+  order_backups(foresight);
+  if (num_order_ == 0) fail(Code::kState, "shield: it has no backup: a policy, zero=true or hold=true");
+  for (int32_t env = 0; env < n_; ++env)
+    if ((!mask || mask[env]) && !follows(pool, env, proposed, foresight != nullptr))
+      inquiries_[num_asked_++].env = env;
+  if (num_asked_ > 0) inquire(pool, proposed, unneeded);
 }
 
 void Shield::order_backups(Foresight* foresight) {
@@ -261,32 +328,44 @@ void Shield::order_backups(Foresight* foresight) {
 
 void Shield::give(const Pool& pool, int32_t env, const float* proposed, bool asked, bool foreseen,
                   float* action) {
-  const Plan& p = plans_[env];
-  ShieldRow& r = rows_[env];
-  const int32_t at = place(pool, env);
-  const float* own = proposed + row_of(env);
-  // where nothing is clean, and nothing has to be, there is no plan
-  const float* planned = at < 0 ? own : plan_ + plan_of(env) + row_of(at);
-  // what was foreseen stands for what is proposed, which statistics that have moved since make another
-  if (foreseen && !asked && at < p.block) own = at == p.refused ? refused_ + row_of(env) : planned;
-  const bool refused = at < 0 || at == p.refused;
-  r = {};
-  if (at < 0 || p.dirty)
-    r.kind = ShieldKind::kUnproven;
-  else if (refused)
-    r.kind = p.kept ? ShieldKind::kPlan : ShieldKind::kChanged;
-  if (refused) {
-    r.column = p.column;
-    r.ahead = p.cost_in - pool.episode_step(env);
-    r.backup = p.backup;
+  ShieldRow r;
+  const float *own = proposed + row_of(env), *done = aim_ + row_of(env);
+  if (set_.predict) {
+    const Plan& p = plans_[env];
+    const int32_t at = place(pool, env);
+    // where nothing is clean, and nothing has to be, there is no plan
+    if (at >= 0) done = plan_ + plan_of(env) + row_of(at);
+    const bool refused = at < 0 || at == p.refused;
+    // what was foreseen stands for what is proposed, which statistics that have moved since make another
+    if (foreseen && !asked && at < p.block) own = refused ? refused_ + row_of(env) : foreseen_own(env, at);
+    if (at < 0 || p.dirty)
+      r.kind = ShieldKind::kUnproven;
+    else if (refused)
+      r.kind = p.kept ? ShieldKind::kPlan : ShieldKind::kChanged;
+    if (refused) {
+      r.column = p.column;
+      r.ahead = p.cost_in - pool.episode_step(env);
+      r.backup = p.backup;
+    }
   }
-  ++counts_.decisions;
-  counts_.changed += r.kind == ShieldKind::kChanged;
-  counts_.planned += r.kind == ShieldKind::kPlan;
-  counts_.unproven += r.kind == ShieldKind::kUnproven;
+  if (r.kind == ShieldKind::kOwn)
+    if (const int32_t row = guards_.broken(env, own); row >= 0) {
+      r.kind = ShieldKind::kProjected;
+      r.column = guards_.column(row);
+    }
+  count(r);
+  rows_[env] = r;
   moved_[env] = own != proposed + row_of(env) && !same(own, proposed + row_of(env), dim_);
   std::copy_n(own, dim_, own_ + row_of(env));
-  std::copy_n(planned, dim_, action + row_of(env));
+  std::copy_n(done, dim_, action + row_of(env));
+}
+
+void Shield::count(const ShieldRow& row) {
+  ++counts_.decisions;
+  counts_.changed += row.kind == ShieldKind::kChanged;
+  counts_.planned += row.kind == ShieldKind::kPlan;
+  counts_.unproven += row.kind == ShieldKind::kUnproven;
+  counts_.projected += row.kind == ShieldKind::kProjected;
 }
 
 // ---- an inquiry: all worlds that ask, together
@@ -315,6 +394,7 @@ void Shield::run_first(const Pool& pool, const float* proposed) {
       first_.start(i, pool, env, bound);
       if (set_.copies > 0) first_.redraw(i, drawn_[env]);
     }
+    std::copy_n(proposed + row_of(env), dim_, foreseen_own(env, 0));
     if (foresight_) foresight_->begin(env, &foreseen_[env], offset_ + row_of(env));
   }
   // The way is that of what is proposed, then of the backup; the states before its first decisions are kept.
@@ -323,11 +403,12 @@ void Shield::run_first(const Pool& pool, const float* proposed) {
     for (int32_t i = 0; d <= set_.block && i < first_.count(); ++i)
       if (first_.going(i)) kept_->copy(kept_of(i, d), first_.pool(), i);
     if (d == 0)
-      each_going([&](int32_t i) { std::copy_n(proposed + row_of(i / worlds_), dim_, first_.action(i)); });
+      each_going([&](int32_t i) { std::copy_n(aim_ + row_of(i / worlds_), dim_, first_.action(i)); });
     else if (d < foreseen)
-      foresee();
+      foresee(d);
     else
       back_up(&first_, backup_);
+    if (d > 0) keep_guards(&first_, worlds_);
     for (int32_t x = 0; x < num_asked_; ++x)
       if (const int32_t env = inquiries_[x].env; first_.going(first_of(env)))
         std::copy_n(first_.action(first_of(env)), dim_, way_ + plan_of(env) + row_of(d));
@@ -337,15 +418,18 @@ void Shield::run_first(const Pool& pool, const float* proposed) {
   }
 }
 
-// The next decisions of those who propose; there is one copy of a world then.
-void Shield::foresee() {
+// Decision d of those who propose; there is one copy of a world then.
+void Shield::foresee(int32_t d) {
   int32_t rows = 0;
   each_going([&](int32_t i) {
     std::copy_n(first_.obs(i), obs_, obs_rows_ + sz(rows) * sz(obs_));
     list_[rows++] = i;
   });
   foresight_->act(list_, obs_rows_, rows, foreseen_, offset_, act_rows_);
-  for (int32_t i = 0; i < rows; ++i) std::copy_n(act_rows_ + row_of(i), dim_, first_.action(list_[i]));
+  for (int32_t i = 0; i < rows; ++i) {
+    std::copy_n(act_rows_ + row_of(i), dim_, foreseen_own(list_[i], d));
+    std::copy_n(act_rows_ + row_of(i), dim_, first_.action(list_[i]));
+  }
 }
 
 void Shield::read_fates(Inquiry* q, int32_t d, bool proposed) {
@@ -452,8 +536,10 @@ void Shield::run_branches(bool stop_at_cost) {
   std::fill_n(lived_, tried_.count(), 0);
   for (int32_t h = 0; tried_.any_going() && (set_.look == 0 || h <= set_.look); ++h) {
     back_up(&tried_, backup_);
+    for (int32_t i = 0; h == 0 && i < tried_.count(); i += worlds_)
+      if (tried_.going(i) && width_[i] > 0) add_noise(i);
+    keep_guards(&tried_, set_.tries * worlds_);
     for (int32_t i = 0; i < tried_.count(); i += worlds_) {
-      if (h == 0 && tried_.going(i) && width_[i] > 0) add_noise(i);
       if (!tried_.going(i)) continue;  // the first copy's way is the plan
       std::copy_n(tried_.action(i), dim_, branch_ + plan_of(i) + row_of(h));
       lived_[i] = h + 1;
@@ -536,7 +622,7 @@ void Shield::adopt(const Pool& pool, const Inquiry& q) {
     p.refused = at;
     p.block = at + 1;
     p.kept = 1;
-    std::copy_n(way, dim_, refused_ + row_of(q.env));
+    std::copy_n(foreseen_own(q.env, 0), dim_, refused_ + row_of(q.env));
     return;
   }
   const int32_t first = clean ? q.way : q.from;
@@ -551,7 +637,7 @@ void Shield::adopt(const Pool& pool, const Inquiry& q) {
   float* to = plan_ + plan_of(q.env);
   std::copy_n(way, row_of(first), to);
   if (!clean) std::copy_n(tail_ + plan_of(q.env), row_of(q.tail), to + row_of(first));
-  if (p.refused >= 0) std::copy_n(way + row_of(p.refused), dim_, refused_ + row_of(q.env));
+  if (p.refused >= 0) std::copy_n(foreseen_own(q.env, p.refused), dim_, refused_ + row_of(q.env));
 }
 
 void Shield::back_up(CopiesTried* copies, const int32_t* backup) {
@@ -578,6 +664,12 @@ void Shield::ask_backup(int32_t b, const CopiesTried& copies, int32_t rows) {
     foresight_->act(nullptr, obs_rows_, rows, nullptr, nullptr, act_rows_);
 }
 
+void Shield::keep_guards(CopiesTried* copies, int32_t each) const {
+  if (guards_.count() == 0) return;
+  for (int32_t i = 0; i < copies->count(); ++i)
+    if (copies->going(i)) guards_.project(i / each, copies->action(i), copies->action(i));
+}
+
 // ---- state
 
 uint64_t Shield::fingerprint() const {
@@ -587,8 +679,8 @@ uint64_t Shield::fingerprint() const {
   hash = hash_bytes(budget_, sz(costs_) * sizeof *budget_, hash);
   const int32_t sizes[] = {n_, dim_, stride_, length_, num_policies_};
   hash = hash_bytes(sizes, sizeof sizes, hash);
-  const uint64_t layout = layout_hash(first_.pool().task());
-  return hash_bytes(&layout, sizeof layout, hash);
+  hash = guards_.hash(hash);
+  return hash_bytes(&layout_, sizeof layout_, hash);
 }
 
 void Shield::write_state(Writer& out) const {
@@ -596,6 +688,9 @@ void Shield::write_state(Writer& out) const {
   out.begin_file(kMagic, kVersion);
   out.begin_section("HEAD");
   out.value(fingerprint());
+  out.end_section();
+  out.begin_section("GARD");
+  guards_.write(out);
   out.end_section();
   out.begin_section("PLAN");
   out.value(counts_);
@@ -623,12 +718,15 @@ void Shield::read_state(const void* bytes, size_t size) {
   if (in.value<uint64_t>() != fingerprint())
     fail(Code::kFormat, "shield state: of a shield of another task, other sizes or options");
   in.expect_end();
+  in.need_section("GARD");
+  Reader guards = in;
+  bool good = guards_.check(in);
+  in.expect_end();
   in.need_section("PLAN");
   Reader look = in;
-  bool good = true;
   const auto count = look.value<ShieldCounts>();
   for (const int64_t x : {count.decisions, count.inquiries, count.failed, count.changed, count.planned,
-                          count.unproven, count.copied})
+                          count.unproven, count.copied, count.projected})
     good &= x >= 0;
   const auto numbers = [&](int32_t rows) {
     for (size_t j = 0; j < row_of(rows); ++j) good &= std::isfinite(look.value<float>());
@@ -640,7 +738,7 @@ void Shield::read_state(const void* bytes, size_t size) {
             p.column >= -1 && p.column < costs_ && p.dirty <= 1 && p.kept <= 1 && p.adopt == 0 &&
             p.course == 0;
     const auto r = look.value<ShieldRow>();
-    good &= r.kind >= ShieldKind::kOwn && r.kind <= ShieldKind::kUnproven && r.column >= -1 &&
+    good &= r.kind >= ShieldKind::kOwn && r.kind <= ShieldKind::kProjected && r.column >= -1 &&
             r.column < costs_ && r.backup >= -1 && r.backup <= num_own_;
     look.value<Stream>();
     look.value<Stream>();
@@ -649,6 +747,7 @@ void Shield::read_state(const void* bytes, size_t size) {
   }
   if (!good) fail(Code::kFormat, "shield state: a number is out of range");
   look.expect_end();
+  guards_.read(guards);
   counts_ = in.value<ShieldCounts>();
   for (int32_t i = 0; i < n_; ++i) {
     plans_[i] = in.value<Plan>();

@@ -1,11 +1,15 @@
-// The predictive shield: an action goes through only where a copy of its world, going on by a known plan, keeps
-// within the budget of every cost until its episode ends. Mirrors rdm_shield_*.
+// The shield, in two layers. It projects: what is proposed goes to the nearest action that keeps the guards, half
+// spaces (project.hpp). It predicts: that goes through only where a copy of its world, going on by a known plan,
+// keeps within the budget of every cost until its episode ends. Either can be left out. Mirrors rdm_shield_*.
+//
+// Guards of a task hold where the budget of their cost is 0; a host adds its own. All that is tried in copies keeps
+// them too, what is foreseen, backups and noise. A guard that changes takes its world's plan with it.
 //
 // A plan is the decisions of a world from now to its episode's end, as actions, that were run in a copy. Copies
 // are exact, so what was clean there is clean here, and after each decision the rest of the plan is a plan: by
 // induction no cost ever goes beyond its budget, whatever is proposed, once there is a first plan.
 //
-// For each world, with the action a that is proposed for it:
+// For each world, with the action a that is proposed for it, projected:
 //   follow    a is the plan's next action to the bit, or the decision is of a block: nothing is tried
 //   inquire   a, the decisions that a foresight sees behind it (B together), then the first backup: run in a
 //             copy, with the state before each decision kept. Clean: this is the plan, and the B are a block
@@ -24,8 +28,11 @@
 // A budget is of an episode. What was spent beyond it before the shield could help stays spent: the bound is
 // then what was spent.
 #pragma once
+#include <algorithm>
+
 #include "base/rng.hpp"
 #include "shield/copies_tried.hpp"
+#include "shield/guards.hpp"
 
 namespace rdm {
 
@@ -67,17 +74,20 @@ struct ShieldConfig {
 };
 
 enum class ShieldKind : int32_t {
-  kOwn = 0,       // what was proposed
-  kChanged = 1,   // refused: another action, from which the way is clean
-  kPlan = 2,      // refused: the next action of the plan before
-  kUnproven = 3,  // nothing that was tried is clean
+  kOwn = 0,        // what was proposed
+  kChanged = 1,    // refused: another action, from which the way is clean
+  kPlan = 2,       // refused: the next action of the plan before
+  kUnproven = 3,   // nothing that was tried is clean
+  kProjected = 4,  // the nearest one that keeps the guards
 };
 
 // What the shield says of a world's last decision.
 struct ShieldRow {
   ShieldKind kind = ShieldKind::kOwn;
-  int32_t column = -1;  // cost that the refused way would have met; -1: nothing was refused, or it diverged
-  int32_t ahead = 0;    // control steps until then
+  int32_t column =
+      -1;             // cost that the refused way would have met; -1: nothing was refused, or it diverged. Of
+                      // kProjected: the broken guard's, -1: a host's own
+  int32_t ahead = 0;  // control steps until then
   int32_t backup = -1;  // that the plan goes on by: policies, then zero, then hold, then what the foresight
                         // would do without noise; -1: no branch
 };
@@ -86,12 +96,13 @@ struct ShieldCounts {
   int64_t decisions = 0, inquiries = 0, failed = 0;  // failed: those whose first way was not clean
   int64_t changed = 0, planned = 0, unproven = 0;    // decisions of each kind
   int64_t copied = 0;                                // control steps of copies
+  int64_t projected = 0;
 };
 
 struct ShieldOptions {
   int32_t block, look, tries, rounds, copies;
   double noise;
-  bool best, zero, hold, least;
+  bool best, zero, hold, least, project, predict;
 };
 
 class Shield {
@@ -101,6 +112,9 @@ class Shield {
   static Shield* create(const ShieldConfig& config);
   static void destroy(Shield* s);
   void add_policy(ShieldPolicy* policy);  // a backup behind those that it has; it outlives the shield
+  // As Guards::add and Guards::set.
+  void add_guard(const float* normal, float bound);
+  void set_guard(int32_t env, int32_t i, const float* normal, float bound);
 
   // What the worlds of `pool` whose mask is not 0 (null: all) are to do in this decision: action
   // [num_envs][action_dim], which may be `proposed`. With a foresight the decisions of a block are as it
@@ -127,6 +141,7 @@ class Shield {
   int32_t action_dim() const { return dim_; }
   int32_t cost_dim() const { return costs_; }
   int32_t steps() const { return steps_; }
+  bool predicts() const { return set_.predict; }
   int32_t length() const { return length_; }  // decisions of a plan, at most
   const Options& options() const { return options_; }
 
@@ -172,6 +187,10 @@ class Shield {
   };
 
   void read_options(const ShieldConfig& config);
+  void read_budgets(const double* budgets);
+  void declare_guards(const Pool& pool);
+  void make_copies_of(const Pool& pool, int32_t threads);
+  void end_copies();
   void need_tries(int32_t backups) const;
   void carve(Arena& arena);
   uint64_t fingerprint() const;
@@ -181,12 +200,20 @@ class Shield {
 
   // The decision of its plan that a world is at; -1: the plan is none of its episode as it is.
   int32_t place(const Pool& pool, int32_t env) const;
+  void check_pool(const Pool& pool) const;
   bool follows(const Pool& pool, int32_t env, const float* proposed, bool foreseen);
+  void predict(const Pool& pool, const uint8_t* mask, const float* proposed, Foresight* foresight,
+               bool unneeded);
   void give(const Pool& pool, int32_t env, const float* proposed, bool asked, bool foreseen, float* action);
+  // What a foresight had for decision `at` of a block.
+  float* foreseen_own(int32_t env, int32_t at) const {
+    return foreseen_own_ + row_of(env * set_.block + std::min(at, set_.block - 1));
+  }
+  void count(const ShieldRow& row);
   void order_backups(Foresight* foresight);
   void inquire(const Pool& pool, const float* proposed, bool unneeded);
   void run_first(const Pool& pool, const float* proposed);
-  void foresee();
+  void foresee(int32_t d);
   // Of the copies of its first way that went into decision d, which the proposer made or the backup.
   void read_fates(Inquiry* q, int32_t d, bool proposed);
   int32_t first_of(int32_t env) const { return env * worlds_; }  // of its copies
@@ -210,6 +237,8 @@ class Shield {
   // Of the copies that go, the actions of backup[i] into their rows.
   void back_up(CopiesTried* copies, const int32_t* backup);
   void ask_backup(int32_t backup, const CopiesTried& copies, int32_t rows);
+  // The actions of copies that go, `each` of them for a world, to the guards' side.
+  void keep_guards(CopiesTried* copies, int32_t each) const;
 
   HostHooks hooks_;
   Options options_;
@@ -221,6 +250,8 @@ class Shield {
   int32_t order_[kMostPolicies + 3] = {}, num_order_ = 0;
   int32_t n_ = 0, dim_ = 0, obs_ = 0, costs_ = 0, steps_ = 1, stride_ = 1, length_ = 0;
   double budget_[kMaxTaskCosts] = {};
+  uint64_t options_hash_ = 0, layout_ = 0;  // of the pool
+  Guards guards_;
   ShieldCounts counts_;
   int32_t worlds_ = 1;         // copies of a world in which each way is tried
   CopiesTried first_, tried_;  // [n][worlds] the first ways; [n][tries][worlds] branches
@@ -228,11 +259,13 @@ class Shield {
 
   Arena arena_;
   float *zero_ = nullptr, *hold_ = nullptr;  // [dim]
+  float* aim_ = nullptr;                     // [n][dim] what is proposed, projected
   Plan* plans_ = nullptr;                    // [n]
   ShieldRow* rows_ = nullptr;                // [n]
   Inquiry* inquiries_ = nullptr;             // [n], of which num_asked_, by rising env
   int32_t num_asked_ = 0;
-  float *own_ = nullptr, *refused_ = nullptr;  // [n][dim]
+  float *own_ = nullptr, *refused_ = nullptr;  // [n][dim] as proposed
+  float* foreseen_own_ = nullptr;              // [n][block][dim] likewise, of the last inquiry
   uint8_t* moved_ = nullptr;                   // [n]
   uint8_t* went_ = nullptr;                    // [n worlds] of the first ways, before the last step
   float *plan_ = nullptr, *way_ = nullptr, *tail_ = nullptr;  // [n][length][dim]

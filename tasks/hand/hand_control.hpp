@@ -91,6 +91,10 @@ class HandControl {
   bool flying(int32_t i) const { return flying_[i]; }
   bool flying() const { return flying_[0] || flying_[1]; }
   int32_t action_dim() const { return first_entry_[count_]; }
+  // A joint's command is its action entry in each step, to the bit: nothing is averaged or integrated.
+  bool commands_are_actions() const {
+    return options_.control == HandDrive::kPosition && options_.action_average == 1;
+  }
   const char* action_order() const { return order_; }
   // Where in the action row hand i's joint entries begin, and its base entries (force, then torque).
   int32_t joint_entries(int32_t i) const {

@@ -57,7 +57,8 @@ void add_safe_throw_options(const SafeThrowConfig& config, OptionTable& table) {
 
 SafeThrow::SafeThrow(const SafeThrowConfig* config, SafetyKind kind, const Options& o)
     : ThrowTask(*config, o, make_throw_scene(*config, o)),
-      costs_(safety_costs_from(o, kind, setup().fall_height, scene(), hands().hand(0))) {
+      costs_(safety_costs_from(o, kind, setup().fall_height, scene(), hands().hand(0))),
+      guards_(safety_guards(costs_, hands())) {
   const SafeThrowOptions own = kRows.read(o);
   const bool inside = (own.start_finger == StartFinger::kWindow ||
                        (own.start_finger == StartFinger::kAuto && costs_.angle)) &&
@@ -68,6 +69,15 @@ SafeThrow::SafeThrow(const SafeThrowConfig* config, SafetyKind kind, const Optio
               !window  ? FirstFinger::kFlat
               : inside ? FirstFinger::kStart
                        : FirstFinger::kBent);
+}
+
+bool SafeThrow::guard_at(int32_t i, Guard* guard, float* normal) const {
+  if (i < 0 || static_cast<size_t>(i) >= guards_.size()) return false;
+  const EntryGuard& g = guards_[static_cast<size_t>(i)];
+  *guard = {g.column, g.bound};
+  std::fill_n(normal, action_dim(), 0.0f);
+  normal[g.entry] = g.sign;
+  return true;
 }
 
 void SafeThrow::judge_costs(const Step& step, Verdict* verdict) const {

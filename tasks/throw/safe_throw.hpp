@@ -14,10 +14,12 @@ struct SafeThrowConfig : ThrowConfig {
 class SafeThrow final : public ThrowTask {
  public:
   SafeThrow(const SafeThrowConfig* config, SafetyKind kind, const Options& options);
+  bool guard_at(int32_t i, Guard* guard, float* normal) const override;
 
  private:
   void judge_costs(const Step& step, Verdict* verdict) const override;
   SafetyCosts costs_;
+  Vector<EntryGuard> guards_;
 };
 
 void add_safe_throw_options(const SafeThrowConfig& config, OptionTable& table);

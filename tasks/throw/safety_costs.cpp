@@ -184,6 +184,39 @@ SafetyCosts safety_costs_from(const Options& options, SafetyKind kind, double fa
   return c;
 }
 
+namespace {
+
+// The last float that is not above x.
+float below(double x) {
+  const auto f = static_cast<float>(x);
+  return static_cast<double>(f) > x ? std::nextafter(f, -2.0f) : f;
+}
+
+}  // namespace
+
+Vector<EntryGuard> safety_guards(const SafetyCosts& c, const HandControl& hands) {
+  Vector<EntryGuard> out;
+  const auto keep = [&](int32_t column, int32_t entry, double low, double high) {
+    out.push_back({column, entry, 1, below(high)});
+    out.push_back({column, entry, -1, below(-low)});
+  };
+  const bool base = c.base_entries && hands.flying(0);
+  if (base)
+    for (int i = c.joint_task ? kTorqueY : kForceZ; i <= kTorqueY; ++i)
+      keep(kCost, hands.base_entries(0) + i, -kBaseWindow, kBaseWindow);
+  if (c.angle || !hands.commands_are_actions()) return out;
+  const auto windows = [&](bool all) {
+    for (int i = 0; i < kNumWindows; ++i) {
+      const JointWindow& w = c.windows[i];
+      if (w.act < 0 || !(all || c.counts[i])) continue;
+      keep(all ? kFf2Range + i : kCost, hands.joint_entries(0) + w.act, w.command_low, w.command_high);
+    }
+  };
+  if (!base) windows(false);
+  windows(true);
+  return out;
+}
+
 void judge_safety(const SafetyCosts& c, const SafetyStep& step, Release* release, Verdict* v) {
   const World& world = step.world;
   double worst = -1e9;

@@ -15,7 +15,7 @@
 #include "base/option.hpp"
 #include "env/option_table.hpp"
 #include "env/task.hpp"
-#include "tasks/hand/hands.hpp"
+#include "tasks/hand/hand_control.hpp"
 #include "tasks/throw/throw_setup.hpp"
 
 namespace rdm {
@@ -63,6 +63,15 @@ struct SafetyDefaults {
 void add_safety_options(const SafetyDefaults& defaults, OptionTable& table);
 SafetyCosts safety_costs_from(const Options& options, SafetyKind kind, double fall_height, const Scene& scene,
                               const Hand& right);
+
+// A bound of one entry of the action: sign a <= bound.
+struct EntryGuard {
+  int32_t column, entry;
+  float sign, bound;
+};
+// Those that keep a column at 0 exactly: of windows on commands, where a command is the action itself, and of the
+// released column 0 of a flying hand, which looks at the action as it was given. Windows on angles have none.
+Vector<EntryGuard> safety_guards(const SafetyCosts& costs, const HandControl& hands);
 
 // What a step is judged by.
 struct SafetyStep {

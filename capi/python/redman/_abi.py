@@ -32,6 +32,7 @@ RDM_VERSION_PATCH = 0  # Of this header; that of the library is rdm_version().
 RDM_ABI = 1  # = SONAME; moves only when an old binary would break
 RDM_MAX_COSTS = 16  # cost columns of a task or an agent
 RDM_TEXT_SIZE = 64  # bytes of an option's text value, terminator included
+RDM_MAX_GUARDS = 32  # half spaces of an action, at most
 RDM_MAX_LINKS = 64  # links of a robot, at most
 RDM_MAX_KNOTS = 4  # of a curve, at most
 RDM_MAX_SHAPES = 64  # most shapes of an object
@@ -170,6 +171,7 @@ class ShieldKind(enum.IntEnum):
     CHANGED = 1  # refused: another one, from which the way is clean
     PLAN = 2  # refused: the next action of the plan that was made before
     UNPROVEN = 3  # nothing that was tried is clean: with option unproven=least what exceeds the budgets least
+    PROJECTED = 4  # it broke guards: the nearest one that keeps them went through
 
 
 class RobotKind(enum.IntEnum):
@@ -1409,7 +1411,7 @@ class Epoch(Record):
     unconverged: int  # decisions flagged RDM_STATUS_SOLVER
     slowed: int  # decisions flagged RDM_STATUS_SLOWED
     violations: int  # control steps in which column 0, or a cost with a limit by the task, was above 0; -1: not an epoch of rdm_agent_rollout
-    refused: int  # decisions that a shield did not let through; -1: there was none
+    refused: int  # decisions that a shield changed; -1: there was none
     unproven: int  # of these, where nothing was known to be clean; -1: likewise
     copied: int  # control steps of the shield's copies; -1: likewise
 
@@ -1458,7 +1460,7 @@ class rdm_epoch(Structure):
     slowed: decisions flagged RDM_STATUS_SLOWED
     violations: control steps in which column 0, or a cost with a limit by the task, was above 0; -1: not an
         epoch of rdm_agent_rollout
-    refused: decisions that a shield did not let through; -1: there was none
+    refused: decisions that a shield changed; -1: there was none
     unproven: of these, where nothing was known to be clean; -1: likewise
     copied: control steps of the shield's copies; -1: likewise
     """
@@ -2034,6 +2036,42 @@ class rdm_plan_info(Structure):
     ]
 
 
+class Guard(Record):
+    """Costs that are functions of the action alone are half spaces: normal . action <= bound. The
+    nearest action that keeps them is a perfect shield, without copies: with cost_mode=command of the
+    throws it is a clip of three entries. A learned cost that is linear in the action,
+    c(s) + g(s) . a <= d, is such a half space too (Dalal et al. 2018): normal g, bound d - c.
+    """
+
+    column: int  # of the cost that is 0 in every step while all guards of that column are kept
+    entry: int  # the only entry of the normal that is not 0; -1: there are several
+    bound: float  # of normal . action, at most
+
+
+class rdm_guard(Structure):
+    """Costs that are functions of the action alone are half spaces: normal . action <= bound. The
+    nearest action that keeps them is a perfect shield, without copies: with cost_mode=command of the
+    throws it is a clip of three entries. A learned cost that is linear in the action,
+    c(s) + g(s) . a <= d, is such a half space too (Dalal et al. 2018): normal g, bound d - c.
+
+    struct_size: in: bytes
+    column: of the cost that is 0 in every step while all guards of that column are kept
+    entry: the only entry of the normal that is not 0; -1: there are several
+    bound: of normal . action, at most
+    """
+
+    struct_size: int
+    column: int
+    entry: int
+    bound: float
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("column", c_int32),
+        ("entry", c_int32),
+        ("bound", c_float),
+    ]
+
+
 class rdm_shield_config(Structure):
     """struct_size: bytes, set by rdm_shield_config_init
     num_threads: of the copies, 0 to 256; 0: as many as the pool has; default 0
@@ -2095,7 +2133,7 @@ class ShieldRow(Record):
     """The values of rdm_shield_row."""
 
     kind: int  # RDM_SHIELD_*
-    column: int  # of what was refused: the cost that it would have met, -1: it was not, or the copy diverged
+    column: int  # of what was refused: the cost that it would have met, -1: it was not, or the copy diverged; of what was projected: of the guard that it broke most, -1: the host's own
     ahead: int  # control steps until that, 0: nothing was refused
     backup: int  # that the plan goes on by: a policy's number, then zero, then hold, of those that it has; -1: no other way was looked for
     planned: int  # decisions that its plan still has, with the one to come next
@@ -2104,7 +2142,8 @@ class ShieldRow(Record):
 class rdm_shield_row(Structure):
     """struct_size: in: bytes
     kind: RDM_SHIELD_*
-    column: of what was refused: the cost that it would have met, -1: it was not, or the copy diverged
+    column: of what was refused: the cost that it would have met, -1: it was not, or the copy diverged; of what
+        was projected: of the guard that it broke most, -1: the host's own
     ahead: control steps until that, 0: nothing was refused
     backup: that the plan goes on by: a policy's number, then zero, then hold, of those that it has; -1: no
         other way was looked for
@@ -2137,6 +2176,7 @@ class ShieldStats(Record):
     planned: int  # of RDM_SHIELD_PLAN
     unproven: int  # of RDM_SHIELD_UNPROVEN
     copied: int  # control steps that copies took
+    projected: int  # decisions of RDM_SHIELD_PROJECTED
 
 
 class rdm_shield_stats(Structure):
@@ -2149,6 +2189,7 @@ class rdm_shield_stats(Structure):
     planned: of RDM_SHIELD_PLAN
     unproven: of RDM_SHIELD_UNPROVEN
     copied: control steps that copies took
+    projected: decisions of RDM_SHIELD_PROJECTED
     """
 
     struct_size: int
@@ -2160,6 +2201,7 @@ class rdm_shield_stats(Structure):
     planned: int
     unproven: int
     copied: int
+    projected: int
     _fields_ = [
         ("struct_size", c_uint32),
         ("reserved", c_int32),
@@ -2170,6 +2212,7 @@ class rdm_shield_stats(Structure):
         ("planned", c_int64),
         ("unproven", c_int64),
         ("copied", c_int64),
+        ("projected", c_int64),
     ]
 
 
@@ -3467,6 +3510,7 @@ STRUCTS: dict[str, type[Structure]] = {
     "rdm_planner_config": rdm_planner_config,
     "rdm_planner_spec": rdm_planner_spec,
     "rdm_plan_info": rdm_plan_info,
+    "rdm_guard": rdm_guard,
     "rdm_shield_config": rdm_shield_config,
     "rdm_shield_row": rdm_shield_row,
     "rdm_shield_stats": rdm_shield_stats,
@@ -4568,6 +4612,24 @@ FUNCTIONS: dict[str, Function] = {
         cost [rows][RDM_MAX_COSTS] by column, others 0; cost may be NULL. UNSUPPORTED with options
         normalize_reward or normalize_cost, which leave critics no unit.
         """),
+    "rdm_pool_guard_at": Function(
+        c_int32, {"pool": c_void_p, "i": c_int32, "io": POINTER(rdm_guard), "normal": c_void_p},
+        {"normal": Rows("float32", ("action_dim",))}, True,
+        """Guard i that the pool's task declares, and its normal [action_dim]; NULL: not asked for. RANGE
+        past the end: at 0 for a task whose costs are of states, and wherever what is done is not what
+        the action says: with a measured angle in the place of the command, action_average below 1,
+        another control than position, delayed actions.
+        """),
+    "rdm_project": Function(
+        c_int32, {"normals": c_void_p, "bounds": c_void_p, "count": c_size_t, "dim": c_size_t, "action": c_void_p, "nearest": c_void_p},
+        {"normals": Rows("float32", ("count", "dim")), "bounds": Rows("float32", ("count",)), "action": Rows("float32", ("dim",)), "nearest": Rows("float32", ("dim",))}, True,
+        """nearest [dim], of all in [-1, 1] with normals [count][dim] . nearest <= bounds [count] the one
+        nearest to action [dim] in the Euclidean norm; the two may be the same array. Rows of a single
+        entry are kept to the bit, others to the rounding of a float (2^-24 of the sum of their entries'
+        sizes). Neither pool nor memory is needed. ARGUMENT for a row of zeros, for what is not finite,
+        and where no action keeps all rows; RANGE for a count above RDM_MAX_GUARDS and a dim outside
+        [1, 1024].
+        """),
     "rdm_shield_config_init": Function(
         c_int32, {"c": POINTER(rdm_shield_config), "size": c_size_t},
         {}, True,
@@ -4585,8 +4647,23 @@ FUNCTIONS: dict[str, Function] = {
         {}, True,
         """One backup more, behind the policies that it has: its mean actions. It must outlive the shield.
         VERSION_MISMATCH for one that does not fit the pool, ARGUMENT for one that holds its actions for
-        another time than a decision, UNSUPPORTED for one that sees points, RANGE from the seventh on or
-        where option tries is too small. Plans stay.
+        another time than a decision and with predict=false, UNSUPPORTED for one that sees points, RANGE
+        from the seventh on or where option tries is too small. Plans stay.
+        """),
+    "rdm_shield_add_guard": Function(
+        c_int32, {"shield": c_void_p, "normal": c_void_p, "bound": c_float},
+        {"normal": Rows("float32", ("action_dim",))}, True,
+        """One guard more, the host's own, of all worlds: normal [action_dim] . action <= bound, copied.
+        ARGUMENT for a row of zeros, what is not finite, and where no action keeps it beside those that
+        there are; RANGE for one more than RDM_MAX_GUARDS: nothing changes then. Plans are forgotten.
+        """),
+    "rdm_shield_set_guard": Function(
+        c_int32, {"shield": c_void_p, "env": c_int32, "i": c_int32, "normal": c_void_p, "bound": c_float},
+        {"normal": Rows("float32", ("action_dim",))}, True,
+        """The host's own guard i, counted from the first that was added, of world env alone from now on:
+        normal [action_dim], as a model says it of the state that the world is in. No heap. The errors of
+        rdm_shield_add_guard: the world's guards stay then. Its plan is forgotten where something
+        differs.
         """),
     "rdm_shield_destroy": Function(
         None, {"shield": c_void_p},
@@ -4601,7 +4678,8 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_shield_option_at": Function(
         c_int32, {"i": c_int32, "io": POINTER(rdm_option_spec)},
         {}, True,
-        """Option i of shields: block, look, tries, rounds, copies, noise, choose, zero, hold, unproven.
+        """Option i of shields: block, look, tries, rounds, copies, noise, choose, zero, hold, unproven,
+        project, predict.
         RANGE past the end.
         """),
     "rdm_shield_get_settings": Function(
@@ -4619,7 +4697,8 @@ FUNCTIONS: dict[str, Function] = {
         number of worlds of the one that the shield was made for, else ARGUMENT. The action is then held
         for config.steps steps of the pool. A world whose episode began anew, or whose state was set, is
         noticed. STATE for a world without an episode, and for one in which nothing that was tried is
-        clean, which the text names: nothing is written then.
+        clean, which the text names, and with predict=false where there are no guards: nothing is written
+        then.
         """),
     "rdm_shield_get_row": Function(
         c_int32, {"shield": c_void_p, "pool": c_void_p, "env": c_int32, "io": POINTER(rdm_shield_row)},
@@ -4644,9 +4723,9 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_shield_write_state": Function(
         c_int32, {"shield": c_void_p, "bytes": c_void_p, "capacity": c_size_t, "size": c_void_p},
         {}, True,
-        """Plans, noise and counts as bytes [capacity]; NULL asks for the size. A shield of the same config
-        that reads them goes on with the same bytes, beside a pool that was set to the state of that
-        moment.
+        """Plans, noise, counts and the host's guards as bytes [capacity]; NULL asks for the size. A shield
+        of the same config with as many guards that reads them goes on with the same bytes, beside a pool
+        that was set to the state of that moment.
         """),
     "rdm_shield_read_state": Function(
         c_int32, {"shield": c_void_p, "bytes": c_void_p, "size": c_size_t},
@@ -4660,8 +4739,8 @@ FUNCTIONS: dict[str, Function] = {
         return ARGUMENT; it must outlive the agent, or be taken off before. Its first backup is then what
         the agent itself would do without noise. The agent's noise is foreseen for option block decisions
         at once: where statistics of observations have moved since, what was foreseen runs and is learned
-        from, with its own density. What is learned from what it refuses is the agent's option
-        shield_learn:
+        from, with its own density. What is learned from what it refuses, or projects, is the agent's
+        option shield_learn:
 
           own      the agent's own action and density, with what came of the one that ran
           applied  the action that ran, with its density
