@@ -153,8 +153,7 @@ RDM_API void rdm_shield_destroy(rdm_shield *shield);            /* NULL is fine 
 RDM_API const char *rdm_shield_error(const rdm_shield *shield); /* last failure on this handle; ""
                                                                  * at first */
 /* Option i of shields: block, look, tries, rounds, copies, noise, choose, zero, hold, unproven,
- * project, predict.
- * RANGE past the end. */
+ * project, predict. RANGE past the end. */
 RDM_API rdm_result rdm_shield_option_at(int32_t i, rdm_option_spec *io);
 /* All options as text [capacity] of lines key=value: given as settings they make a shield of the
  * same options. */

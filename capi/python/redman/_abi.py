@@ -4679,8 +4679,7 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"i": c_int32, "io": POINTER(rdm_option_spec)},
         {}, True,
         """Option i of shields: block, look, tries, rounds, copies, noise, choose, zero, hold, unproven,
-        project, predict.
-        RANGE past the end.
+        project, predict. RANGE past the end.
         """),
     "rdm_shield_get_settings": Function(
         c_int32, {"shield": c_void_p, "text": c_void_p, "capacity": c_size_t, "size": c_void_p},
