@@ -61,6 +61,8 @@ std::string value_words(const std::string& name, bool positional) {
   if (name == "object" && positional) return joined(object_names());
   if (name == "kind") return "hand arm other";
   if (name == "policy") return "zero hold random demo plan";
+  if (name == "shield") return "off project predict";
+  if (name == "info") return "planner shield";
   if (name == "completion") return "bash zsh fish";
   return "";
 }

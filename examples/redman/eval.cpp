@@ -6,6 +6,13 @@
 
 namespace tool {
 
+void finish_evaluation(Evaluation& e, const redman::Pool& pool, const Actor& actor,
+                       const std::vector<Episode>& episodes) {
+  e.summary = summarise(episodes, e.limits);
+  e.violating_steps = pool.stats().violations;
+  if (actor.shielded()) e.shield = actor.shielded()->counts();
+}
+
 Evaluation evaluate(const ActorChoice& choice, PoolSettings settings, const std::vector<std::string>& limits,
                     int32_t episodes, bool stochastic) {
   settings.envs = std::min(settings.envs, episodes);
@@ -16,8 +23,8 @@ Evaluation evaluate(const ActorChoice& choice, PoolSettings settings, const std:
   Actor actor(choice, pool, stochastic, settings.seed);
   pool.reset();
   out.magnitudes = settings.magnitudes;
-  out.summary = summarise(
-      play_episodes(pool, actor, static_cast<size_t>(episodes), {}, {}, settings.magnitudes), out.limits);
+  finish_evaluation(out, pool, actor,
+                    play_episodes(pool, actor, static_cast<size_t>(episodes), {}, {}, settings.magnitudes));
   return out;
 }
 
@@ -38,7 +45,9 @@ Json evaluation_json(const Evaluation& e, int32_t episodes) {
                {"violation_rate", s.violation_rate},
                {"fall_rate", s.fall_rate},
                {"cost_per_step", s.cost_per_step},
+               {"violating_steps", e.violating_steps},
                {"feasible", feasible(s, e.limits)}};
+  if (e.shield) put_shield(json, *e.shield);
   put_trouble(json, s.trouble);
   return json;
 }
@@ -53,15 +62,16 @@ std::string evaluation_text(const Evaluation& e, int32_t episodes) {
     costs.add({e.costs[k], format("%.3f", s.cost_mean[k]), format("%.3f", s.cost_std[k]),
                e.limits[k] < 0 ? "-" : number_text(e.limits[k])});
   return text + costs.text() +
-         format("episodes over a limit: %.1f%%; cost per step: %.4f\n", 100 * s.violation_rate,
-                s.cost_per_step) +
+         format("episodes over a limit: %.1f%%; cost per step: %.4f; violating steps: %lld\n",
+                100 * s.violation_rate, s.cost_per_step, static_cast<long long>(e.violating_steps)) +
+         (e.shield ? shield_text(*e.shield) : "") +
          (e.magnitudes ? "costs are magnitudes: sums of cost_raw (cost_signal=raw)\n" : "");
 }
 
 namespace {
 
 struct EvalFlags {
-  std::string policy = "hold";
+  std::string policy = "hold", shield = "off";
   PoolSettings pool;
   std::vector<std::string> sets, limits;
   int32_t episodes = kEvalEpisodes;
@@ -70,6 +80,7 @@ struct EvalFlags {
 
 Report run_eval(EvalFlags flags) {
   ActorChoice choice = choose_actor(flags.policy, flags.pool.task);
+  choice.shield = read_shield_word(flags.shield);
   adopt_task(choice, flags.task_given, flags.sets, flags.pool);
   apply_sets(flags.sets, flags.pool, nullptr);
   choice.limits.insert(choice.limits.end(), flags.limits.begin(), flags.limits.end());
@@ -95,6 +106,7 @@ void add_eval(CLI::App& app, Run& run) {
       add_pool_flags(*command, flags->pool, "task, or its file (.task); default: the policy's");
   command->add_option("--episodes", flags->episodes, "episodes")->check(CLI::Range(1, kMostEpisodes));
   command->add_flag("--stochastic", flags->stochastic, "sample actions instead of taking the mean");
+  add_shield_flag(*command, flags->shield);
   add_cost_limit_flag(*command, flags->limits);
   add_set_flag(*command, flags->sets);
   command->callback([&run, flags, task] {

@@ -7,6 +7,8 @@
 #include "common/names.hpp"
 #include "common/presets.hpp"
 #include "common/text.hpp"
+#include "play/plan_word.hpp"
+#include "play/shield_word.hpp"
 
 namespace tool {
 namespace {
@@ -144,6 +146,12 @@ Report list_algos(const ListFlags& flags) {
   return {object_of({{"algos", std::move(all)}}), text.empty() ? table.text() : text};
 }
 
+// Options that go with a flag in one word, as `--policy plan:...` and `--shield predict:...`.
+Report show_options(const std::string& whose) {
+  const auto table = whose == "planner" ? planner_options() : shield_options();
+  return {{{"options", options_json(table)}}, options_text(table)};
+}
+
 Report show_info() {
   Json json = build_json();
   json["simulator"] = (rdm_features() & RDM_FEATURE_SIM) != 0;
@@ -177,8 +185,12 @@ void add_algos(CLI::App& app, Run& run) {
 }
 
 void add_info(CLI::App& app, Run& run) {
+  auto whose = std::make_shared<std::string>();
   CLI::App* command = app.add_subcommand("info", "Print versions and how the library was built");
-  command->callback([&run] { run = show_info; });
+  command->add_option("options", *whose, "planner or shield: list its options instead")
+      ->check(one_of({"planner", "shield"}));
+  command->callback(
+      [&run, whose] { run = [whose] { return whose->empty() ? show_info() : show_options(*whose); }; });
 }
 
 }  // namespace tool

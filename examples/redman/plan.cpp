@@ -13,7 +13,7 @@ namespace tool {
 namespace {
 
 struct PlanFlags {
-  std::string policy, critic, record;
+  std::string policy, critic, record, shield = "off";
   PoolSettings pool;
   std::vector<std::string> sets, plans, own, limits;  // own: options of planners that are flags
   int32_t episodes = 1;
@@ -26,6 +26,7 @@ Report run_plan(PlanFlags flags) {
   for (const std::string& text : flags.plans) options.push_back(split_pair(text, "--plan"));
   const std::string word = plan_word(options, flags.policy, flags.critic);
   ActorChoice choice = choose_actor(word, flags.pool.task);
+  choice.shield = read_shield_word(flags.shield);
   adopt_task(choice, flags.task_given, flags.sets, flags.pool);
   for (const std::string& set : flags.sets) try {
       apply_sets({set}, flags.pool, nullptr);
@@ -49,8 +50,7 @@ Report run_plan(PlanFlags flags) {
   if (recorder) before = [&](size_t env, size_t episode) { recorder->before(env, episode); };
   if (recorder) after = [&](size_t env, size_t episode) { recorder->after(env, episode); };
   pool.reset();
-  const std::vector<Episode> played = play_episodes(pool, actor, episodes, after, before);
-  e.summary = summarise(played, e.limits);
+  finish_evaluation(e, pool, actor, play_episodes(pool, actor, episodes, after, before));
   say_trouble(e.summary.trouble, "plan");
   const double ms = actor.planning().calls > 0
                         ? 1e3 * actor.planning().seconds / static_cast<double>(actor.planning().calls)
@@ -89,9 +89,12 @@ void add_plan(CLI::App& app, Run& run) {
         "--" + key, [flags, key](const std::string& value) { flags->own.push_back(key + '=' + value); },
         row.help);
   }
-  command->add_option("--plan", flags->plans, "key=value of the planner; repeatable")
+  command
+      ->add_option("--plan", flags->plans,
+                   "key=value of the planner, as `redman info planner` lists them; repeatable")
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE");
+  add_shield_flag(*command, flags->shield);
   add_cost_limit_flag(*command, flags->limits);
   CLI::Option* record = command->add_option("--record", flags->record,
                                             "all of every step, as `rollout --record`: .npz or .csv");

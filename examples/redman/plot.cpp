@@ -50,6 +50,13 @@ Panel make_panel(const std::string& title, const std::string& column, const std:
   return panel;
 }
 
+// Runs of before a column was written have none.
+bool has_numbers(const Panel& panel) {
+  return std::any_of(panel.series.begin(), panel.series.end(), [](const Series& s) {
+    return std::any_of(s.y.begin(), s.y.end(), [](double y) { return std::isfinite(y); });
+  });
+}
+
 // A dashed line per limit: grey when all groups share it, else in the group's colour.
 std::vector<Level> limit_levels(const std::vector<Group>& groups) {
   const double first = groups[0].runs[0]->limit;
@@ -80,6 +87,8 @@ Figure chart_of_a_task(const std::vector<const RunData*>& runs, bool each) {
                 make_panel("Episodes with success", "Metrics/SuccessRate", groups, true)},
                {},
                groups.size()};
+  Panel violations = make_panel("Violating steps of an epoch", "Metrics/Violations", groups);
+  if (has_numbers(violations)) chart.panels.push_back(std::move(violations));
   chart.panels[1].levels = limit_levels(groups);
   for (const Group& g : groups)
     chart.legend.push_back(

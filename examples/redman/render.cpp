@@ -1,5 +1,6 @@
 // `render`: a picture of a moment, a strip of moments, a film of an episode, or its playback in 3D.
 #include <cstdlib>
+#include <optional>
 
 #include "commands.hpp"
 #include "common/files.hpp"
@@ -19,7 +20,7 @@ constexpr int32_t kMostPixels = 8192;                     // a side
 constexpr uint64_t kMostStripPixels = uint64_t{1} << 24;  // 8 moments of 1920x1080
 
 struct RenderFlags {
-  std::string policy = "hold", size = "640x480", camera = "front", out, video, html, glb;
+  std::string policy = "hold", size = "640x480", camera = "front", out, video, html, glb, shield = "off";
   PoolSettings pool;
   std::vector<std::string> sets;
   int32_t step = 0, strip = 0, from = 0, to = -1, width = 0, height = 0;
@@ -64,16 +65,31 @@ void film(const RenderFlags& flags, Scene& scene) {
   film.finish();
 }
 
-Playback record(const RenderFlags& flags, const ActorChoice& choice, Trouble& trouble) {
+// What came of the last episode that was played: all are the same, as far as they go.
+struct Played {
+  Trouble trouble;
+  int64_t violating_steps = 0;
+  std::optional<ShieldCounts> shield;
+
+  void note(const Scene& scene) {
+    trouble = scene.trouble();
+    violating_steps = scene.pool().stats().violations;
+    if (scene.shielded()) shield = scene.shielded()->counts();
+  }
+};
+
+Playback record(const RenderFlags& flags, const ActorChoice& choice, Played& played) {
   Scene scene = scene_of(flags, choice);
   scene.advance_to(flags.from);
   Playback playback = begin_playback(scene.pool(), cost_limits(scene.pool(), choice.limits));
   playback.actor = flags.policy;
   playback.seed = flags.pool.seed;
+  if (scene.shielded()) playback.shield = flags.shield;
   do {
     add_frame(playback, scene.pool());
+    if (scene.shielded()) playback.stepped_in.push_back(scene.stepped_in());
   } while ((flags.to < 0 || scene.step() < flags.to) && scene.advance());
-  trouble = scene.trouble();
+  played.note(scene);
   return playback;
 }
 
@@ -82,7 +98,8 @@ Report run_render(RenderFlags flags) {
   if (!flags.html.empty()) check_viewer();
   for (const std::string& file : {flags.html, flags.glb})
     if (!file.empty()) check_replaceable(file);
-  const ActorChoice choice = choose_actor(flags.policy, flags.pool.task);
+  ActorChoice choice = choose_actor(flags.policy, flags.pool.task);
+  choice.shield = read_shield_word(flags.shield);
   adopt_task(choice, flags.task_given, flags.sets, flags.pool);
   apply_sets(flags.sets, flags.pool, nullptr);
   const bool plays = !flags.video.empty() || !flags.html.empty() || !flags.glb.empty();
@@ -92,7 +109,7 @@ Report run_render(RenderFlags flags) {
     if (pictures) check_default_output(flags.out, "\x89PNG", "--out");
   }
   Json json;
-  Trouble trouble;  // of the last episode that was played: all are the same, as far as they go
+  Played played;
   int32_t frames = 0;
   double seconds = 0;
   int32_t width = flags.width, height = flags.height * (flags.cloud ? 2 : 1);
@@ -104,7 +121,7 @@ Report run_render(RenderFlags flags) {
     width = image.width;
     frames += scene.frames();
     seconds += scene.seconds();
-    trouble = scene.trouble();
+    played.note(scene);
     files.push_back(flags.out);
   }
   if (!flags.video.empty()) {
@@ -112,7 +129,7 @@ Report run_render(RenderFlags flags) {
     film(flags, scene);
     frames += scene.frames();
     seconds += scene.seconds();
-    trouble = scene.trouble();
+    played.note(scene);
     files.push_back(json["video"] = flags.video);
   }
   std::string text;
@@ -120,7 +137,7 @@ Report run_render(RenderFlags flags) {
     text = format("%dx%d pixels, %d pictures at %.1f per second\n", width, height, frames,
                   frames / std::max(seconds, 1e-9));
   if (!flags.html.empty() || !flags.glb.empty()) {
-    const Playback playback = record(flags, choice, trouble);
+    const Playback playback = record(flags, choice, played);
     if (!flags.html.empty()) {
       replace_file(flags.html, playback_page(playback, flags.camera));
       files.push_back(json["html"] = flags.html);
@@ -133,8 +150,13 @@ Report run_render(RenderFlags flags) {
     if (frames == 0) json["frames"] = playback.frames;
   }
   json["file"] = files.front();
-  put_trouble(json, trouble);
-  say_trouble(trouble, "render");
+  put_trouble(json, played.trouble);
+  say_trouble(played.trouble, "render");
+  if (played.shield) {
+    json["violating_steps"] = played.violating_steps;
+    put_shield(json, *played.shield);
+    text += shield_text(*played.shield) + "a red border: it did in the step that led to the picture\n";
+  }
   if (frames > 0) {
     json["width"] = width;
     json["height"] = height;
@@ -179,6 +201,7 @@ void add_render(CLI::App& app, Run& run) {
   command->add_option("--html", flags->html,
                       "page with the episode in 3D, to turn, play and scrub, above its reward and costs");
   command->add_option("--glb", flags->glb, "the episode as binary glTF, an animation for 3D viewers");
+  add_shield_flag(*command, flags->shield);
   add_set_flag(*command, flags->sets);
   command->callback([&run, flags, task, step] {
     flags->task_given = task->count() > 0;

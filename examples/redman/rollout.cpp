@@ -15,7 +15,7 @@ namespace tool {
 namespace {
 
 struct RolloutFlags {
-  std::string policy = "hold", out, record;
+  std::string policy = "hold", out, record, shield = "off";
   PoolSettings pool;
   std::vector<std::string> sets;
   int32_t episodes = 1;
@@ -76,7 +76,11 @@ void adopt_recording(const Recording& r, RolloutFlags& flags) {
 }
 
 Report run_rollout(RolloutFlags flags) {
-  const ActorChoice choice = choose_actor(flags.policy, flags.pool.task);
+  ActorChoice choice = choose_actor(flags.policy, flags.pool.task);
+  choice.shield = read_shield_word(flags.shield);
+  if (choice.shield.on && flags.noise > 0)
+    throw Usage(
+        "--shield, --noise: noise on what the shield let through is beyond its proof; give one of them");
   if (choice.recording) adopt_recording(*choice.recording, flags);
   adopt_task(choice, flags.task_given, flags.sets, flags.pool);
   apply_sets(flags.sets, flags.pool, nullptr);
@@ -131,6 +135,11 @@ Report run_rollout(RolloutFlags flags) {
   std::string text = format("%d episodes: return %.4f, cost %.3f, length %.1f, falls %.0f%%\nstate hash %s\n",
                             flags.episodes, s.return_mean, s.cost_mean.empty() ? 0 : s.cost_mean[0],
                             s.length_mean, 100 * s.fall_rate, hash.c_str());
+  if (const Shielded* shield = actor.shielded()) {
+    json["violating_steps"] = pool.stats().violations;
+    put_shield(json, shield->counts());
+    text += shield_text(shield->counts());
+  }
   if (table) {
     json["file"] = flags.out;
     text += "wrote " + flags.out + '\n';
@@ -168,6 +177,7 @@ void add_rollout(CLI::App& app, Run& run) {
       ->add_option("--noise", flags->noise,
                    "mean deviation of noise on the actions; a record keeps them without it too, as label")
       ->check(CLI::Range(0.0, 10.0));
+  add_shield_flag(*command, flags->shield);
   add_set_flag(*command, flags->sets);
   command->callback([&run, flags, task, episodes, command] {
     flags->task_given = task->count() > 0;

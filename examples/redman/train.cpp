@@ -22,8 +22,8 @@ constexpr int32_t kMostBlocks = 64;  // that --ranks sets
 struct TrainFlags {
   RunSettings run;
   double steps = 1e6;
-  std::vector<std::string> sets, teach_given;         // the latter: names of settings
-  std::string out, resume, start_share = "0", ranks;  // ranks "": none
+  std::vector<std::string> sets, teach_given;                         // the latter: names of settings
+  std::string out, resume, start_share = "0", ranks, shield = "off";  // ranks "": none
   bool task_given = false;
   bool steps_given = false, threads_given = false, others_given = false, overwrite = false;
 };
@@ -82,6 +82,7 @@ Trainer begin(TrainFlags flags, const Ranks* ranks) {
   }
   apply_sets(flags.sets, run.pool, &run.agent);
   run.steps = whole_steps(flags.steps);
+  run.shield = read_shield_word(flags.shield);
   if (run.teach.asked()) {
     for (const Options& options :
          {adopt_lesson(flags.teach_given, run.pool, run.teach), taught_options(run.teach)})
@@ -169,6 +170,39 @@ Report run_train(const TrainFlags& flags) {
   return report;
 }
 
+Json whole_or_null(double x) {
+  return std::isnan(x) ? Json() : Json(static_cast<int64_t>(x));
+}
+
+double first_cost(const Summary& s) {
+  return s.cost_mean.empty() ? 0 : s.cost_mean[0];
+}
+
+// What violated, and what the shield did, in training and afterwards; `shielded`: the same evaluation under it.
+void put_shields(Json& json, const Trainer& trainer, const Evaluation& bare, const Evaluation& shielded) {
+  json["violating_steps"] = bare.violating_steps;
+  json["training_violating_steps"] = whole_or_null(trainer.total("Metrics/Violations"));
+  if (!shielded.shield) return;
+  json["training_interventions"] = whole_or_null(trainer.total("Shield/Refused"));
+  json["training_unproven"] = whole_or_null(trainer.total("Shield/Unproven"));
+  put_shield(json, *shielded.shield);
+  const Summary& s = shielded.summary;
+  json["shielded"] = {{"return", s.return_mean},
+                      {"cost", first_cost(s)},
+                      {"success_rate", s.success_rate},
+                      {"violating_steps", shielded.violating_steps}};
+  put_shield(json["shielded"], *shielded.shield);
+}
+
+std::string shields_text(const Json& json, const Evaluation& shielded) {
+  const Summary& s = shielded.summary;
+  return format("under the shield: return %.3f, cost %.3f, success %.0f%%\n", s.return_mean, first_cost(s),
+                100 * s.success_rate) +
+         shield_text(*shielded.shield) + "in training: " + json["training_violating_steps"].dump() +
+         " violating steps, " + json["training_interventions"].dump() + " interventions, in " +
+         json["training_unproven"].dump() + " nothing was known to be clean\n";
+}
+
 // Of one process, or the first of several.
 Report train_alone(const TrainFlags& flags, const Ranks* ranks) {
   Trainer trainer = start(flags, ranks);
@@ -181,13 +215,16 @@ Report train_alone(const TrainFlags& flags, const Ranks* ranks) {
   settings.seed += Trainer::kEvalSeed;
   settings.envs = kEvalEnvs;
   settings.magnitudes = learns_magnitudes(run.agent);
-  const ActorChoice choice = choose_actor(trainer.folder().policy());
+  ActorChoice choice = choose_actor(trainer.folder().policy());
   const Evaluation e = evaluate(choice, settings, run.limits, kEvalEpisodes, false);
+  choice.shield = run.shield;
+  const Evaluation shielded =
+      run.shield.on ? evaluate(choice, settings, run.limits, kEvalEpisodes, false) : Evaluation{};
   const Summary& s = e.summary;
   say_trouble(trainer.trouble(), "training");
   say_trouble(s.trouble, "evaluation");
   const bool safe = feasible(s, e.limits);
-  const double cost = s.cost_mean.empty() ? 0 : s.cost_mean[0], limit = e.limits.empty() ? -1 : e.limits[0];
+  const double cost = first_cost(s), limit = e.limits.empty() ? -1 : e.limits[0];
   Json json = {{"run", trainer.folder().path()},
                {"policy", trainer.folder().policy()},
                {"env_steps", trainer.env_steps()},
@@ -205,6 +242,7 @@ Report train_alone(const TrainFlags& flags, const Ranks* ranks) {
                {"interrupted", trainer.interrupted()}};
   put_trouble(json, s.trouble);
   put_trouble(json, trainer.trouble(), "training_");
+  put_shields(json, trainer, e, shielded);
   if (trainer.taught().cloned) {
     const rdm_clone_report& c = trainer.taught().report;
     json["clone"] = {{"rows", c.train_rows},
@@ -230,6 +268,7 @@ Report train_alone(const TrainFlags& flags, const Ranks* ranks) {
       kEvalEpisodes, s.return_mean, cost, e.magnitudes ? " in magnitudes" : "",
       limit < 0 ? "none" : number_text(limit).c_str(), safe ? "feasible" : "not feasible",
       100 * s.success_rate, 100 * s.fall_rate, s.length_mean);
+  if (shielded.shield) text += shields_text(json, shielded);
   return {json, text};
 }
 
@@ -283,6 +322,7 @@ void add_train(CLI::App& app, Run& run) {
       command->add_option("--steps,--total-steps", flags->steps, "control steps, all worlds together");
   add_cost_limit_flag(*command, r.limits);
   add_set_flag(*command, flags->sets);
+  others.push_back(add_shield_flag(*command, flags->shield));
   others.push_back(command->get_option("--cost-limit"));
   others.push_back(command->get_option("--set"));
   others.push_back(command->add_flag(

@@ -222,6 +222,9 @@ def _row(e: Epoch, costs: list[str], limits: list[Optional[float]], steps: int, 
     def episodic(value: float) -> float:
         return value if e.episodes > 0 else math.nan
 
+    def counted(value: int) -> float:
+        return value if value >= 0 else math.nan
+
     def named(text: str, k: int) -> str:
         return text if k == 0 else f"{text}/{costs[k]}"
 
@@ -230,7 +233,7 @@ def _row(e: Epoch, costs: list[str], limits: list[Optional[float]], steps: int, 
     row.update((named("Metrics/EpCost", k), episodic(e.cost[k])) for k in range(len(costs)))
     row.update({"Metrics/EpLen": episodic(e.length), "Metrics/FallRate": episodic(e.fall_rate),
                 "Metrics/SuccessRate": episodic(e.success_rate), "Metrics/CostPerStep": e.cost_per_step,
-                "Metrics/Episodes": e.episodes})
+                "Metrics/Episodes": e.episodes, "Metrics/Violations": counted(e.violations)})
     row.update((named("Metrics/LagrangeMultiplier", k), e.multiplier[k]) for k in range(len(costs))
                if k == 0 or limits[k] is not None)
     row.update({
@@ -238,7 +241,8 @@ def _row(e: Epoch, costs: list[str], limits: list[Optional[float]], steps: int, 
         "Train/ClipFraction": e.clip_fraction, "Train/StopIter": e.passes, "Loss/Loss_pi": e.loss_policy,
         "Loss/Loss_reward_critic": e.loss_reward_value, "Loss/Loss_cost_critic": e.loss_cost_value,
         "Value/reward": e.value_reward, "Value/cost": e.value_cost, "Metrics/TestEpRet": tested[0],
-        "Metrics/TestEpCost": tested[1], "Time/Epoch": times[0], "Time/Evaluation": times[1],
+        "Metrics/TestEpCost": tested[1], "Shield/Refused": counted(e.refused), "Shield/Unproven": counted(e.unproven),
+        "Shield/Copied": counted(e.copied), "Time/Epoch": times[0], "Time/Evaluation": times[1],
         "Time/FPS": steps / times[0], "Time/Total": times[2],
         "Trouble/Diverged": e.diverged, "Trouble/ContactsLeftOut": e.contacts_left_out, "Trouble/Unconverged": e.unconverged,
         "Trouble/Slowed": e.slowed,

@@ -28,6 +28,9 @@ class PictureRow {
 // Equal widths, with a thin line between them inside the upper one.
 Image one_below_the_other(const Image& above, const Image& below);
 
+// A red border inside of it.
+void add_border(Image& image);
+
 // The bytes of a PNG file.
 std::string png_bytes(const Image& image);
 // Replaces the file atomically. Failure when it cannot be written.

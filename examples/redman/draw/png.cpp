@@ -34,6 +34,17 @@ Image one_below_the_other(const Image& above, const Image& below) {
   return out;
 }
 
+void add_border(Image& image) {
+  constexpr unsigned char kRed[3] = {208, 0, 0};
+  const int32_t w = image.width, h = image.height, wide = std::max(4, std::min(w, h) / 60);
+  for (int32_t y = 0; y < h; ++y)
+    for (int32_t x = 0; x < w; ++x)
+      if (std::min({x, y, w - 1 - x, h - 1 - y}) < wide)
+        std::copy_n(kRed, 3,
+                    image.rgb.data() +
+                        3 * (static_cast<size_t>(y) * static_cast<size_t>(w) + static_cast<size_t>(x)));
+}
+
 std::string png_bytes(const Image& image) {
   png_image png{};
   png.version = PNG_IMAGE_VERSION;

@@ -112,6 +112,7 @@ ActorChoice choose_actor(const std::string& word, const std::string& task) {
     choice.options = run.pool.options;
     choice.limits = run.limits;
     choice.magnitudes = learns_magnitudes(run.agent);
+    choice.run_shield = run.shield.settings;
   }
   return choice;
 }
@@ -144,9 +145,7 @@ Actor::Actor(const ActorChoice& choice, redman::Pool& pool, bool stochastic, uin
         pool);
   if (choice.plan) {
     make_planners(choice, pool, seed);
-    return;
-  }
-  if (choice.recording) {
+  } else if (choice.recording) {
     recording_ = choice.recording;
     file_ = choice.file;
     const size_t n = pool.num_envs(), width = pool.action().width();
@@ -167,6 +166,7 @@ Actor::Actor(const ActorChoice& choice, redman::Pool& pool, bool stochastic, uin
     }
   }
   prepare(pool, stochastic, seed);
+  add_shield(choice, pool, seed);
 }
 
 Actor::Actor(redman::Policy policy, const redman::Pool& pool) : policy_(std::move(policy)) {
@@ -185,6 +185,15 @@ void Actor::make_planners(const ActorChoice& choice, const redman::Pool& pool, u
     config.agent = critic_ ? critic_->get() : nullptr;
     planners_.push_back(as_usage([&] { return redman::Planner(config); }));
   }
+}
+
+// A policy that plays is a backup too, and one that proposes to planners where it decides as often as they do.
+void Actor::add_shield(const ActorChoice& choice, const redman::Pool& pool, uint64_t seed) {
+  if (!choice.shield.on) return;
+  if (recording_) throw Usage("--shield: a recording is played as it was; give off, or another policy");
+  const redman::Policy* backup = policy_ ? &*policy_ : nullptr;
+  if (proposer_ && proposer_->info().action_repeat == pool.spec().action_repeat) backup = &*proposer_;
+  shielded_.emplace(choice.shield, choice.run_shield, pool, backup, seed);
 }
 
 void Actor::plan(redman::Pool& pool, const uint8_t* mask) {
@@ -227,6 +236,7 @@ void Actor::restart(const uint8_t* mask) {
     played_[i] = 0;
   }
   if (player_) player_->reset(mask);
+  if (shielded_) shielded_->restart(mask);
 }
 
 std::string Actor::went_elsewhere(size_t env) const {
@@ -264,6 +274,11 @@ void Actor::replay(redman::Pool& pool, const uint8_t* mask) {
 }
 
 void Actor::act(redman::Pool& pool, const uint8_t* mask) {
+  propose(pool, mask);
+  if (shielded_) shielded_->act(pool, mask);
+}
+
+void Actor::propose(redman::Pool& pool, const uint8_t* mask) {
   if (demo_) return demo_->act(pool, mask);
   if (recording_) return replay(pool, mask);
   if (!planners_.empty()) return plan(pool, mask);

@@ -8,6 +8,7 @@
 
 #include "common/setup.hpp"
 #include "demo/player.hpp"
+#include "play/shielded.hpp"
 
 namespace tool {
 
@@ -29,6 +30,8 @@ struct ActorChoice {
   bool magnitudes = false;          // which are on magnitudes
   int32_t points = 0, repeat = 1;   // of a policy with eyes: that it sees, and control steps of a decision
   bool color = false;               // and whether in colour
+  ShieldWord shield;                // --shield: who looks at what it does
+  std::string run_shield;           // lines key=value of the run's, which lie under that
 };
 // zero, hold, random, demo, trained (of `task`, play/trained.hpp), plan (play/plan_word.hpp), a .demo file,
 // an .npz file of a rollout, a policy file or a run folder. Failure when the file cannot be read as what it
@@ -63,8 +66,11 @@ class Actor {
   // Failure when an episode of a recording did not end where it ended when it was recorded.
   void check_ends() const;
   const PlanningCost& planning() const { return planning_; }
+  const Shielded* shielded() const { return shielded_ ? &*shielded_ : nullptr; }  // null: no shield
 
  private:
+  void add_shield(const ActorChoice& choice, const redman::Pool& pool, uint64_t seed);
+  void propose(redman::Pool& pool, const uint8_t* mask);
   void make_planners(const ActorChoice& choice, const redman::Pool& pool, uint64_t seed);
   void plan(redman::Pool& pool, const uint8_t* mask);
   void prepare(const redman::Pool& pool, bool stochastic, uint64_t seed);
@@ -83,6 +89,7 @@ class Actor {
   std::vector<size_t> episode_, played_;  // [num_envs] of the recording, and its steps so far
   std::optional<redman::Actor> player_;   // of policy_, which outlives it
   rdm_points seen_ = {};                  // clouds of all worlds, where it sees them
+  std::optional<Shielded> shielded_;      // by policy_ or proposer_, which outlive it
 };
 
 }  // namespace tool

@@ -35,6 +35,9 @@ struct Playback {
   std::vector<float> episode_return;  // [frames] sum up to the frame
   std::vector<float> episode_cost;    // [frames][costs] likewise
   std::vector<uint8_t> success;       // [frames]
+  std::string shield;                 // the word of --shield, "" none
+  std::vector<float>
+      stepped_in;  // [frames] 1: the shield did, in the step that led to the frame; empty: none
   std::vector<rdm_contact> contacts;  // of all frames
   std::vector<size_t> contacts_end;   // [frames] into contacts
   bool terminated = false;            // a fall ended it

@@ -65,6 +65,7 @@ Image Scene::picture() {
     image = one_below_the_other(
         image, draw_cloud(*cloud_, s.points, s.point_shape, s.point_class, s.num_points, width_, height_));
   }
+  if (stepped_in()) add_border(image);
   seconds_ += std::chrono::duration<double>(Clock::now() - begin).count();
   ++frames_;
   return image;

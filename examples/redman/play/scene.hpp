@@ -22,6 +22,9 @@ class Scene {
   int32_t frames() const { return frames_; }
   double seconds() const { return seconds_; }  // spent in pictures
   Trouble trouble() const { return trouble_of(pool_); }
+  const Shielded* shielded() const { return actor_.shielded(); }  // null: no shield
+  // The step that led here is of a decision in which the shield stepped in. Its picture has a red border.
+  bool stepped_in() const { return step_ > 0 && shielded() && shielded()->stepped_in(pool_, 0); }
 
  private:
   redman::Pool pool_;

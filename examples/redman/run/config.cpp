@@ -29,6 +29,14 @@ Options from_sets(const std::vector<std::string>& sets, const char* member) {
   return out;
 }
 
+ShieldWord shield_at(const Document& object, const char* key) {
+  try {
+    return read_shield_word(text_at(object, key));
+  } catch (const Usage& e) {
+    throw Failure(e.what());
+  }
+}
+
 // A file's text as it was, tabs and all: who reads it judges it.
 std::string file_at(const Document& object, const std::string& key) {
   const auto found = object.find(key);
@@ -92,7 +100,8 @@ TeachSettings parse_teach(const Document& json) {
 }  // namespace
 
 std::string config_text(const RunSettings& s, const redman::Pool& pool, const redman::Agent& agent,
-                        const std::vector<double>& limits, int64_t steps_per_epoch) {
+                        const std::vector<double>& limits, int64_t steps_per_epoch,
+                        const redman::Shield* shield) {
   const int32_t task = pool.spec().task, algo = find_algo(s.agent.algo);
   const std::string task_name = task_at(task).name, algo_name = algo_at(algo).name;
   const auto costs = task_costs(task);
@@ -124,6 +133,10 @@ std::string config_text(const RunSettings& s, const redman::Pool& pool, const re
                {"action_dim", pool.spec().action_dim},
                {"layout_hash", format("%016llx", static_cast<unsigned long long>(pool.spec().layout_hash))},
                {"build", build_json()}};
+  if (shield) {
+    json["train_cfgs"]["shield"] = s.shield.word;
+    json["shield_cfgs"] = values_json(shield->settings());
+  }
   if (!s.own.plugins.empty()) json["plugins"] = s.own.plugins;
   if (!s.own.task.empty()) json["task_file"] = s.own.task;
   if (!s.own.robots.empty()) json["robot_files"] = s.own.robots;
@@ -161,6 +174,7 @@ RunSettings parse_config(const char* text, size_t size) {
   if (json.contains("teach_cfgs")) s.teach = parse_teach(object_at(json, "teach_cfgs"));
   texts("robot_files", &s.own.robots);
   texts("object_files", &s.own.objects);
+  if (train.contains("shield")) s.shield = shield_at(train, "shield");
   if (train.contains("tensorboard")) s.events = flag_at(train, "tensorboard");
   return s;
 }

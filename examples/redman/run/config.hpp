@@ -2,10 +2,12 @@
 #pragma once
 #include <cstddef>
 #include <map>
+#include <redman/shield.hpp>
 #include <string>
 
 #include "common/setup.hpp"
 #include "common/task_files.hpp"
+#include "play/shield_word.hpp"
 #include "teach/settings.hpp"
 
 namespace tool {
@@ -21,12 +23,14 @@ struct RunSettings {
   bool events = true;               // an event file for TensorBoard
   OwnFiles own;
   TeachSettings teach;         // `from` "": nobody teaches
+  ShieldWord shield;           // that rollouts are under
   std::string save_recording;  // file for what the teacher showed, "": none; not kept
 };
 
-// The text of the file. `pool` and `agent` say what the options came to; limits [cost_dim].
+// The text of the file. `pool`, `agent` and the shield (null: none) say what the options came to; limits [cost_dim].
 std::string config_text(const RunSettings& settings, const redman::Pool& pool, const redman::Agent& agent,
-                        const std::vector<double>& limits, int64_t steps_per_epoch);
+                        const std::vector<double>& limits, int64_t steps_per_epoch,
+                        const redman::Shield* shield = nullptr);
 
 // Failure when a member is missing, of the wrong kind or out of range. Whether task, algorithm and options
 // exist is for the pool and the agent to say.

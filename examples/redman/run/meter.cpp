@@ -39,11 +39,15 @@ void Meter::show(const rdm_epoch& e) {
                                 ? format("no episode has ended  cost per step %.3g", e.cost_per_step)
                                 : format("return %.2f  cost %.2f  length %.0f  falls %.0f%%", e.ret,
                                          e.cost[0], e.length, 100 * e.fall_rate);
+  const std::string shield =
+      e.refused < 0 ? ""
+                    : format("  violations %lld  refused %lld", static_cast<long long>(e.violations),
+                             static_cast<long long>(e.refused));
   const std::string line =
-      format("%3.0f%%  %s steps  %s  multiplier %.3g  %s steps/s  %d:%02d left",
+      format("%3.0f%%  %s steps  %s%s  multiplier %.3g  %s steps/s  %d:%02d left",
              std::min(100.0, 100 * static_cast<double>(e.env_steps) / static_cast<double>(goal_)),
-             short_count(static_cast<double>(e.env_steps)).c_str(), ended.c_str(), e.multiplier[0],
-             short_count(rate).c_str(), seconds_left / 60, seconds_left % 60);
+             short_count(static_cast<double>(e.env_steps)).c_str(), ended.c_str(), shield.c_str(),
+             e.multiplier[0], short_count(rate).c_str(), seconds_left / 60, seconds_left % 60);
   wipe();
   std::fputs(line.c_str(), stderr);
   if (terminal_)

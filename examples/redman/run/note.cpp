@@ -1,5 +1,6 @@
 #include "run/note.hpp"
 
+#include <algorithm>
 #include <cfloat>
 #include <cstring>
 
@@ -25,7 +26,9 @@ std::string note_bytes(const Note& note) {
                {"seconds", note.seconds}};
   if (note.last) json["last"] = {note.last->ret, note.last->cost};
   if (note.best) json["best"] = {note.best->feasible, note.best->ret, note.best->excess};
+  if (!note.shield.empty()) json["shield_bytes"] = note.shield.size();
   std::string bytes = json_text(json) + '\n';
+  bytes.append(note.shield.begin(), note.shield.end());
   bytes.append(note.best_policy.begin(), note.best_policy.end());
   return bytes;
 }
@@ -47,13 +50,20 @@ Note parse_note(const char* bytes, size_t size) {
     const Document& last = list_at(json, "last", 2);
     note.last = {finite_or(last[0], "last", -DBL_MAX), finite_or(last[1], "last", DBL_MAX)};
   }
+  const char* rest = bytes + std::min(end + 1, size);
+  const auto left = bytes + size - rest;
+  if (json.contains("shield_bytes")) {
+    const char* begin = rest;
+    rest += integer_at(json, "shield_bytes", 1, left);
+    note.shield.assign(begin, rest);
+  }
   if (!json.contains("best")) return note;
   const Document& best = list_at(json, "best", 3);
   if (!best[0].is_boolean()) throw Failure("best: does not begin with true or false");
   note.best = {best[0].get<bool>(), finite_or(best[1], "best", -DBL_MAX),
                finite_or(best[2], "best", DBL_MAX)};
-  if (end + 1 >= size) throw Failure("best: no policy follows");
-  note.best_policy.assign(bytes + end + 1, bytes + size);
+  if (rest == bytes + size) throw Failure("best: no policy follows");
+  note.best_policy.assign(rest, bytes + size);
   return note;
 }
 

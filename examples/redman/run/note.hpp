@@ -1,5 +1,5 @@
 // The note in a checkpoint: what the trainer knows beside the states of the agent and the worlds. One line of
-// JSON, then the bytes of the best policy.
+// JSON, then the bytes of the shield's state and of the best policy.
 #pragma once
 #include <cstddef>
 #include <optional>
@@ -19,6 +19,7 @@ struct Note {
   std::optional<LastEvaluation> last;
   std::optional<Score> best;
   redman::Bytes best_policy;  // empty without `best`
+  redman::Bytes shield;       // its state, empty without one
   bool clock_lost = false;    // parsed: `seconds` was out of range, and is 0
 };
 

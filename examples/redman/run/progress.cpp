@@ -23,6 +23,7 @@ template <class Add>
 void visit(const std::vector<CostColumn>& columns, const Row& row, Add add) {
   const rdm_epoch& e = row.e;
   const auto episodic = [&](double v) { return e.episodes > 0 ? v : std::nan(""); };
+  const auto counted = [](int64_t n) { return n < 0 ? std::nan("") : static_cast<double>(n); };
   const auto name = [&](const char* text, size_t k) {
     return k == 0 ? text : text + ("/" + columns[k].name);
   };
@@ -36,6 +37,7 @@ void visit(const std::vector<CostColumn>& columns, const Row& row, Add add) {
   add("Metrics/SuccessRate", episodic(e.success_rate));
   add("Metrics/CostPerStep", e.cost_per_step);
   add("Metrics/Episodes", static_cast<double>(e.episodes));
+  add("Metrics/Violations", counted(e.violations));
   for (size_t k = 0; k < columns.size(); ++k)
     if (k == 0 || columns[k].limited) add(name("Metrics/LagrangeMultiplier", k), e.multiplier[k]);
   add("Train/KL", e.kl);
@@ -51,6 +53,9 @@ void visit(const std::vector<CostColumn>& columns, const Row& row, Add add) {
   add("Value/cost", e.value_cost);
   add("Metrics/TestEpRet", row.evaluation.ret);
   add("Metrics/TestEpCost", row.evaluation.cost);
+  add("Shield/Refused", counted(e.refused));
+  add("Shield/Unproven", counted(e.unproven));
+  add("Shield/Copied", counted(e.copied));
   add("Time/Epoch", row.times.epoch);
   add("Time/Evaluation", row.times.evaluation);
   add("Time/FPS", static_cast<double>(row.steps) / row.times.epoch);

@@ -90,6 +90,24 @@ Trainer::Trainer(RunSettings settings, const Ranks* ranks)
       last_{std::nan(""), std::nan("")} {
   if (!handles_costs(settings_.agent.algo, pool_)) score_limits_.assign(limits_.size(), -1);
   if (ranks) redman::check(rdm_pool_set_rank(pool_.get(), ranks->hooks().rank, ranks->count()));
+  if (settings_.shield.on) add_shield();
+}
+
+// Its first backup is the agent itself. What no plan avoids happens, and is counted.
+void Trainer::add_shield() {
+  const std::string flag = "--shield " + settings_.shield.word + ": ";
+  if (ranks_) throw Usage(flag + "it is not shared among ranks; train without --ranks");
+  if (redman::Policy(agent_.policy()).info().num_points > 0)
+    throw Usage(flag + "the agent's encoder sees points, which copies of worlds do not have");
+  auto config = redman::shield_config(pool_);
+  config.seed = settings_.pool.seed;
+  config.steps = static_cast<int32_t>(option("action_repeat")) / pool_.spec().action_repeat;
+  shield_ = make_shield(settings_.shield, "unproven=least\n", config);
+  redman::set_shield(agent_, &*shield_);
+}
+
+std::string Trainer::config() const {
+  return config_text(settings_, pool_, agent_, limits_, steps_per_epoch(), shield_ ? &*shield_ : nullptr);
 }
 
 void Trainer::prepare() {
@@ -133,9 +151,8 @@ void Trainer::draw_starts() {
 void Trainer::begin(RunFolder folder) {
   folder_.emplace(std::move(folder));
   const auto policy = agent_.policy();
-  folder_->start(config_text(settings_, pool_, agent_, limits_, steps_per_epoch()),
-                 curve_header(cost_columns(pool_.spec().task, limits_)), {policy.begin(), policy.end()},
-                 settings_.events);
+  folder_->start(config(), curve_header(cost_columns(pool_.spec().task, limits_)),
+                 {policy.begin(), policy.end()}, settings_.events);
 }
 
 void Trainer::resume(RunFolder folder) {
@@ -148,7 +165,7 @@ void Trainer::resume(RunFolder folder) {
   restore(folder_->checkpoint());
   plan_schedule();
   folder_->cut_progress(progress_bytes_, settings_.events);
-  folder_->write_config(config_text(settings_, pool_, agent_, limits_, steps_per_epoch()));
+  folder_->write_config(config());
 }
 
 void Trainer::follow(const std::string& checkpoint) {
@@ -184,7 +201,9 @@ void Trainer::save() {
     return;
   }
   folder_->check();
-  Note note{epoch_, env_steps_, progress_bytes_, earlier_seconds_ + seconds_, {}, best_, best_policy_, false};
+  Note note{epoch_, env_steps_, progress_bytes_, earlier_seconds_ + seconds_, {}, best_, best_policy_,
+            {},     false};
+  if (shield_) note.shield = shield_->state();
   if (!std::isnan(last_.ret)) note.last = last_;
   const std::string bytes = note_bytes(note);
   redman::check(rdm_checkpoint_write(folder_->checkpoint().c_str(), agent_.get(), pool_.get(), bytes.data(),
@@ -206,6 +225,8 @@ void Trainer::restore(const std::string& path) {
   try {
     Note note = parse_note(bytes.data(), bytes.size());
     if (note.best) redman::Policy(note.best_policy).check_fits(pool_.spec());
+    if (shield_ && note.shield.empty()) throw std::runtime_error("it has no state of the shield");
+    if (shield_) shield_->set_state(note.shield);
     epoch_ = saved_epoch_ = note.epoch;
     env_steps_ = note.env_steps;
     progress_bytes_ = note.progress_bytes;
@@ -323,6 +344,16 @@ void Trainer::finish() {
                stderr);
   const redman::Bytes& kept = best_ ? best_policy_ : last;
   folder_->write_policy({kept.begin(), kept.end()});
+}
+
+double Trainer::total(const char* column) const {
+  const std::string text = read_file(folder_->progress());
+  const Columns columns = parse_progress(text.data(), text.size());
+  const auto found = columns.find(column);
+  if (found == columns.end()) return std::nan("");
+  double sum = 0;
+  for (const double x : found->second) sum += x;
+  return sum;
 }
 
 double Trainer::steps_per_second() const {

@@ -41,8 +41,12 @@ class Trainer {
   const Taught& taught() const { return taught_; }
   Trouble trouble() const { return trouble_of(pool_); }  // of training, in this process
   double steps_per_second() const;                       // of this process, collecting and learning
+  // Sum over all epochs of the run of what a column of progress.csv counts; NaN where one does not tell.
+  double total(const char* column) const;
 
  private:
+  void add_shield();
+  std::string config() const;
   void restore(const std::string& path);
   bool first() const { return !ranks_ || ranks_->first(); }
   bool stopped() const;  // by a signal to one of the ranks
@@ -66,6 +70,7 @@ class Trainer {
   RunSettings settings_;
   redman::Pool pool_, eval_pool_;
   std::vector<double> limits_;
+  std::optional<redman::Shield> shield_;  // of the agent's rollouts, which it outlives
   redman::Agent agent_;
   std::vector<double> score_limits_;  // limits that rank policies: none for an algorithm without cost limits
 

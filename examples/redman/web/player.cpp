@@ -41,6 +41,11 @@ Json curves_json(const Playback& p) {
     out.push_back(curve_json(c.name, c.help, c.limit, column(p.cost, p.costs.size(), k),
                              column(p.episode_cost, p.costs.size(), k)));
   }
+  if (p.stepped_in.empty()) return out;
+  std::vector<float> sum;
+  for (const float x : p.stepped_in) sum.push_back(x + (sum.empty() ? 0 : sum.back()));
+  out.push_back(
+      curve_json("shield", "steps in which it did not let through what was proposed", -1, p.stepped_in, sum));
   return out;
 }
 
@@ -79,6 +84,9 @@ std::string playback_page(const Playback& p, const std::string& camera) {
   }
   for (size_t k = 0; k < p.frames; ++k)
     if (p.success[k]) success.push_back(k);
+  Json stepped_in = Json::array();
+  for (size_t k = 0; k < p.stepped_in.size(); ++k)
+    if (p.stepped_in[k] > 0) stepped_in.push_back(k);
   const Json episode = {{"task", p.task},
                         {"actor", p.actor},
                         {"seed", p.seed},
@@ -88,14 +96,18 @@ std::string playback_page(const Playback& p, const std::string& camera) {
                         {"shapes", p.bodies.size()},
                         {"terminated", p.terminated},
                         {"success", success},
+                        {"stepped_in", stepped_in},
                         {"camera", first},
                         {"cameras", cameras},
                         {"curves", curves_json(p)},
                         {"contacts", contacts_json(p)},
                         {"glb", base64(glb.data(), glb.size())}};
-  const std::string about =
+  std::string about =
       format("policy %s, seed %llu, %zu frames of %s s", p.actor.c_str(),
              static_cast<unsigned long long>(p.seed), p.frames, format("%.4g", p.control_dt).c_str());
+  if (!p.shield.empty())
+    about += format("; shield %s, a red border where it stepped in, in %zu frames", p.shield.c_str(),
+                    stepped_in.size());
   return filled_page("player.html", {{"title", html_text(p.task + ", " + p.actor)},
                                      {"task", html_text(p.task)},
                                      {"about", html_text(about)},

@@ -38,6 +38,7 @@
     const last = k === frames - 1, good = episode.success.includes(k), fell = last && episode.terminated && !good;
     $('state').textContent = good ? 'success' : fell ? 'ended' : '';
     $('state').className = good ? 'good' : fell ? 'bad' : '';
+    $('view').classList.toggle('stepped-in', episode.stepped_in.includes(k));
   }
   function seek(k) {
     time = Math.min(Math.max(k, 0), frames - 1);

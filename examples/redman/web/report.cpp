@@ -128,6 +128,7 @@ std::vector<Chart> charts_of(const TaskReport& t) {
     out.push_back({"Metrics/EpCost" + tail, k == 0 ? "Cost of an episode" : "Cost: " + costs[k].name,
                    costs[k].name, false, k == 0 || costs[k].limit >= 0});
   }
+  out.push_back({"Metrics/Violations", "Violating steps of an epoch", "", false, true});
   out.push_back({"Metrics/SuccessRate", "Episodes with success", "", true, true});
   out.push_back({"Metrics/FallRate", "Episodes that end in a fall", "", true, false});
   out.push_back({"Metrics/EpLen", "Length of an episode, steps", "", false, false});
@@ -146,6 +147,8 @@ std::vector<Chart> charts_of(const TaskReport& t) {
       {"Train/ClipFraction", "Clipped samples"},
       {"Loss/Loss_reward_critic", "Loss of the reward critic"},
       {"Loss/Loss_cost_critic", "Loss of the cost critic"},
+      {"Shield/Refused", "Decisions that the shield refused"},
+      {"Shield/Unproven", "Decisions in which nothing was known to be clean"},
       {"Time/FPS", "Control steps per second"}};
   for (const auto& [column, title] : others) out.push_back({column, title, "", false, false});
   return out;
