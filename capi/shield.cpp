@@ -13,7 +13,7 @@ using namespace rdm::capi;
 
 namespace {
 
-constexpr int32_t kMostSteps = 1000;
+constexpr int32_t kMostHeld = 1000;
 
 static_assert(RDM_MAX_GUARDS == kMostGuards);
 static_assert(static_cast<int>(RDM_SHIELD_PROJECTED) == static_cast<int>(ShieldKind::kProjected));
@@ -108,8 +108,8 @@ rdm_result rdm_shield_create(rdm_shield** out, const rdm_shield_config* c) {
     const Use use(in.pool);
     if (in.num_threads < 0 || in.num_threads > 256)
       fail(Code::kRange, "config.num_threads: %d is outside [0, 256]", in.num_threads);
-    if (in.steps < 0 || in.steps > kMostSteps)
-      fail(Code::kRange, "config.steps: %d is outside [0, %d]", in.steps, kMostSteps);
+    if (in.steps < 0 || in.steps > kMostHeld)
+      fail(Code::kRange, "config.steps: %d is outside [0, %d]", in.steps, kMostHeld);
     const HostHooks hooks = hooks_from(in.host);
     const HostScope scope(hooks);
     const Vector<OptionInput> options = read_options(in.options, in.num_options, "options");
