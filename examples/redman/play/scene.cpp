@@ -47,6 +47,7 @@ bool Scene::advance() {
   actor_.act(pool_);
   pool_.step();
   ++step_;
+  intervened_ |= stepped_in();
   return true;
 }
 
@@ -65,7 +66,8 @@ Image Scene::picture() {
     image = one_below_the_other(
         image, draw_cloud(*cloud_, s.points, s.point_shape, s.point_class, s.num_points, width_, height_));
   }
-  if (stepped_in()) add_border(image);
+  if (intervened_) add_border(image);
+  intervened_ = false;
   seconds_ += std::chrono::duration<double>(Clock::now() - begin).count();
   ++frames_;
   return image;

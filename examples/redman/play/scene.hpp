@@ -18,12 +18,13 @@ class Scene {
   // False, and nothing happens, when the episode is over.
   bool advance();
   void advance_to(int32_t step);
-  Image picture();  // by the camera
+  // By the camera; with a red border where the shield stepped in since the picture before.
+  Image picture();
   int32_t frames() const { return frames_; }
   double seconds() const { return seconds_; }  // spent in pictures
   Trouble trouble() const { return trouble_of(pool_); }
   const Shielded* shielded() const { return actor_.shielded(); }  // null: no shield
-  // The step that led here is of a decision in which the shield stepped in. Its picture has a red border.
+  // The step that led here is of a decision in which the shield stepped in.
   bool stepped_in() const { return step_ > 0 && shielded() && shielded()->stepped_in(pool_, 0); }
 
  private:
@@ -33,6 +34,7 @@ class Scene {
   std::optional<rdm_camera_info> cloud_;  // that looks at clouds, where they are wanted
   int32_t width_, height_, step_ = 0, frames_ = 0;
   double seconds_ = 0;
+  bool intervened_ = false;  // since the last picture
 };
 
 // `moments` pictures at even distances from step `first` to step `last`, side by side.
