@@ -16,7 +16,7 @@ check() {  # check WHAT TEXT FILE COUNT
 
 "$tool" plot ball_run.* --out one.svg --json > one || exit 1
 check 'lines of one task' '"lines":2' one 1
-check 'panels of one task' 'class="title"' one.svg 6
+check 'panels of one task' 'class="title"' one.svg 7
 check 'the two seeds share a line' 'ppo_lag, limit 25 (2 runs)' one.svg 1
 check 'the limit' 'class="level"' one.svg 1
 "$tool" plot . --out all.svg --json > all || exit 1
