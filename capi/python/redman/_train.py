@@ -222,8 +222,8 @@ def _row(e: Epoch, costs: list[str], limits: list[Optional[float]], steps: int, 
     def episodic(value: float) -> float:
         return value if e.episodes > 0 else math.nan
 
-    def counted(value: int) -> float:
-        return value if value >= 0 else math.nan
+    def counted(value: Optional[int]) -> float:
+        return math.nan if value is None else value
 
     def named(text: str, k: int) -> str:
         return text if k == 0 else f"{text}/{costs[k]}"
