@@ -101,6 +101,19 @@ TEST(Config, RefusesNumbersThatNothingCanBeDoneWith) {
     EXPECT_NE(failure([&] { config(replaced(kConfig, "seed\": 3", std::string("seed\": ") + bad)); }), "");
 }
 
+TEST(Config, ReadsTheShieldAsTheFlagSaysIt) {
+  const auto shield = [](const std::string& word) {
+    return config(replaced(kConfig, "\"threads\"", "\"shield\": " + word + ", \"threads\"")).shield;
+  };
+  EXPECT_FALSE(config(kConfig).shield.on);
+  EXPECT_TRUE(shield("\"predict:block=3\"").on);
+  EXPECT_EQ(shield("\"predict:block=3,noise=1\"").settings, "predict=true\nblock=3\nnoise=1\n");
+  EXPECT_EQ(shield("\"Project\"").settings, "predict=false\n");
+  for (const char* bad : {"\"predicts\"", "\"predict:blok=3\"", "\"predict:block\"", "\"predict:\"",
+                          "\"off:block=3\"", "\"\"", "true", "[]", "\"project:predict=true\""})
+    EXPECT_NE(failure([&] { shield(bad); }), "") << bad;
+}
+
 TEST(Config, RefusesOtherKindsAndTexts) {
   EXPECT_NE(failure([&] { config(replaced(kConfig, "\"max_steps=5\"", "\"max_steps\"")); }), "");
   EXPECT_NE(failure([&] { config(replaced(kConfig, "\"max_steps=5\"", "7")); }), "");
@@ -134,6 +147,22 @@ TEST(CheckpointNote, ComesBackAsWritten) {
   EXPECT_EQ(n.best_policy.size(), 6u);
   const std::string again = note_bytes(n);
   EXPECT_EQ(again, kNote + "\nPOLICY");
+}
+
+TEST(CheckpointNote, HasTheShieldsStateBeforeThePolicy) {
+  const std::string head = replaced(kNote, "}", R"(,"shield_bytes":5})");
+  const Note n = note(head, "\nPLANSPOLICY");
+  EXPECT_EQ(std::string(n.shield.begin(), n.shield.end()), "PLANS");
+  EXPECT_EQ(std::string(n.best_policy.begin(), n.best_policy.end()), "POLICY");
+  EXPECT_EQ(note_bytes(n), head + "\nPLANSPOLICY");
+  EXPECT_NE(failure([&] { note(head, "\nPLANS"); }), "") << "no policy is left";
+  EXPECT_NE(failure([&] { note(head, "\nPLAN"); }), "");
+  EXPECT_NE(failure([&] { note(head, ""); }), "");
+  for (const char* size : {"0", "-1", "12", "9223372036854775807", "\"5\""})
+    EXPECT_NE(failure([&] { note(replaced(head, ":5}", std::string(":") + size + "}"), "\nPLANSPOLICY"); }),
+              "")
+        << size;
+  spoil(head + "\nPLANSPOLICY", [](const std::string& text) { parse_note(text.data(), text.size()); });
 }
 
 TEST(CheckpointNote, RefusesWhatItsReaderCouldNotUse) {

@@ -28,7 +28,7 @@ ShieldWord read_shield_word(const std::string& word) {
   out.word = word;
   out.on = !same_name(kind, known[0]);
   out.predicts = !project;
-  if (project) out.settings = "predict=false\n";
+  if (out.on) out.settings = project ? "predict=false\n" : "predict=true\n";  // over those of a run
   if (!out.on && colon != std::string::npos) throw Usage(flag + "off has no options");
   const auto table = shield_options();
   for (size_t at = colon; at != std::string::npos;) {
@@ -37,6 +37,7 @@ ShieldWord read_shield_word(const std::string& word) {
     const auto [key, value] = split_pair(item, "--shield:");
     std::vector<std::string> keys;
     for (const rdm_option_spec& row : table) keys.push_back(row.key);
+    if (same_name(key, "predict")) throw Usage(flag + "the words project and predict say that option");
     if (!has_option(table, key))
       throw Usage(flag + "shields have no option " + key + nearest_hint(key, keys));
     out.settings += key + '=' + value + '\n';

@@ -97,7 +97,7 @@ Trainer::Trainer(RunSettings settings, const Ranks* ranks)
 void Trainer::add_shield() {
   const std::string flag = "--shield " + settings_.shield.word + ": ";
   if (ranks_) throw Usage(flag + "it is not shared among ranks; train without --ranks");
-  if (redman::Policy(agent_.policy()).info().num_points > 0)
+  if (settings_.shield.predicts && redman::Policy(agent_.policy()).info().num_points > 0)
     throw Usage(flag + "the agent's encoder sees points, which copies of worlds do not have");
   auto config = redman::shield_config(pool_);
   config.seed = settings_.pool.seed;

@@ -22,6 +22,8 @@ std::vector<Bytes> seeds() {
   const unsigned char some[4] = {1, 2, 3, 4};
   note.best_policy.assign(some, some + 4);
   const std::string full = tool::note_bytes(note);
+  note.shield.assign(some, some + 3);
+  const std::string shielded = tool::note_bytes(note);
   redman::Pool pool(redman::pool_config("two_state"));
   redman::Agent agent(redman::agent_config(pool));
   const std::string config = tool::config_text(tool::RunSettings{}, pool, agent, {2.5}, 1024);
@@ -29,6 +31,7 @@ std::vector<Bytes> seeds() {
   out.push_back(with_pick(1, bytes_of(config)));
   out.push_back(with_pick(2, bytes_of(plain)));
   out.push_back(with_pick(2, bytes_of(full)));
+  out.push_back(with_pick(2, bytes_of(shielded)));
   out.push_back(with_pick(3, bytes_of("TotalEnvSteps,Metrics/EpRet,Metrics/EpCost\n1,2,3\n4,nan,6\n7,8\n")));
   return out;
 }
