@@ -155,7 +155,8 @@ Report run_render(RenderFlags flags) {
   if (played.shield) {
     json["violating_steps"] = played.violating_steps;
     put_shield(json, *played.shield);
-    text += shield_text(*played.shield) + "a red border: it did in the step that led to the picture\n";
+    text += shield_text(*played.shield) +
+            "red border: it did in the step before the picture, or since the one on its left\n";
   }
   if (frames > 0) {
     json["width"] = width;

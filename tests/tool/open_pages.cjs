@@ -63,6 +63,23 @@ async function player(name, { moving, fixed, dark, scene = true }) {
   }
 }
 
+// Frames in which the shield stepped in have a border, others none.
+async function bordered(name) {
+  const page = await open(at(name + '.html'));
+  try {
+    const frames = await page.ask('redman.frames');
+    const marked = await page.ask(`JSON.parse(document.getElementById('episode').textContent).stepped_in`);
+    expect(marked.length > 0 && marked.length < frames, `${name}: the shield stepped in in ${marked.length} of ${frames} frames`);
+    for (let k = 0; k < frames; ++k) {
+      const width = await page.ask(`redman.seek(${k}), parseFloat(getComputedStyle(document.getElementById('view'), '::after').borderTopWidth) || 0`);
+      expect((width > 0) === marked.includes(k), `${name}: frame ${k} has a border of ${width} pixels`);
+    }
+    expect(page.problems.length === 0, `${name}: ${page.problems}`);
+  } finally {
+    await page.close();
+  }
+}
+
 async function report(dark) {
   const page = await open(at('report.html'), { height: 1500, dark });
   try {
@@ -137,6 +154,7 @@ async function otherViewer(name, shape) {
   await player('hand', { moving: 'object', fixed: 'right_palm' });
   await player('jenga', { moving: 'target', dark: true });
   await player('one', { scene: false });
+  await bordered('wall');
   await report(false);
   await report(true);
   await otherViewer('hand', 'object');

@@ -39,6 +39,7 @@ play house --task clean_house --policy demo
 play hull --task hand_over_safe_finger --policy zero --set object=hull
 play ball --task ball_run --policy random --camera top
 play arena --task point_button2 --policy random --to 60
+play wall --task hand_over_wall --policy trained --seed 2 --shield predict --to 24
 play one --task bandit --policy zero --from 1
 
 # both at once, with a picture, and a moment in the middle

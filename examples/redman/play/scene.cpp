@@ -66,7 +66,7 @@ Image Scene::picture() {
     image = one_below_the_other(
         image, draw_cloud(*cloud_, s.points, s.point_shape, s.point_class, s.num_points, width_, height_));
   }
-  if (intervened_) add_border(image);
+  if (frames_ > 0 ? intervened_ : stepped_in()) add_border(image);
   intervened_ = false;
   seconds_ += std::chrono::duration<double>(Clock::now() - begin).count();
   ++frames_;

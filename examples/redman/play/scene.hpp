@@ -18,7 +18,8 @@ class Scene {
   // False, and nothing happens, when the episode is over.
   bool advance();
   void advance_to(int32_t step);
-  // By the camera; with a red border where the shield stepped in since the picture before.
+  // By the camera; with a red border where the shield stepped in since the picture before, of the first one in the
+  // step that led to it.
   Image picture();
   int32_t frames() const { return frames_; }
   double seconds() const { return seconds_; }  // spent in pictures
