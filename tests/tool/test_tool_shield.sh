@@ -24,6 +24,8 @@ check 'nothing to shield from' less 0 "$(number violating_steps bare)"
 check 'a step violates' test "$(number violating_steps shielded)" = 0
 check 'a cost came' test "$(number cost_mean shielded)" = 0.0
 check 'it never stepped in' less 0 "$(number interventions shielded)"
+# the policy holds its actions for two steps: it is looked at when it decides
+check 'decisions are not those of the policy' less "$(number decisions shielded)" 1900
 check 'no decisions' less 1000 "$(number decisions shielded)"
 check 'a shield is told of without one' sh -c '! grep -q interventions bare'
 
@@ -43,27 +45,63 @@ check 'progress.csv has no violations' grep -q 'Metrics/Violations.*Shield/Refus
 check 'config.json has no shield' grep -q '"shield": "predict"' whole/config.json
 # shellcheck disable=SC2086
 "$tool" train $train --out part > part.json 2> /dev/null &
-while [ "$(wc -l 2> /dev/null < part/progress.csv || echo 0)" -lt 6 ]; do sleep 0.02; done
-kill -INT $!
-wait $!
+pid=$!
+while kill -0 $pid 2> /dev/null && { [ ! -f part/progress.csv ] || [ "$(wc -l < part/progress.csv)" -lt 6 ]; }; do sleep 0.02; done
+kill -INT $pid
+wait $pid
+check 'the run was over before it was broken off' less "$(number env_steps part.json)" 20000
 "$tool" train --resume part --json > rest.json 2> /dev/null || exit 1
-check 'resumed it is another run' cmp -s whole/policy.rdm part/policy.rdm
+same whole part 'broken off and resumed'
 check 'the counts are of the rest alone' test "$(number training_interventions whole.json)" = "$(number training_interventions rest.json)"
+
+# a run evaluates without one unless it is asked for, and then with the run's options
+"$tool" eval --policy whole --episodes 20 --json > free.json || exit 1
+check 'eval of a run is shielded' sh -c '! grep -q interventions free.json'
+"$tool" eval --policy whole --episodes 20 --shield predict --json > under.json || exit 1
+check 'eval of a run is not shielded' grep -q '"interventions":' under.json
 
 refused() {  # refused TEXT ARGUMENTS...
   text=$1
   shift
   "$tool" "$@" > out 2>&1
   check "exit status of $*" test $? -eq 2
-  check "$* says: $(cat out)" grep -q "$text" out
+  check "$* says: $(cat out)" grep -q -- "$text" out
 }
 refused 'nearest is predict' eval --task hand_over_wall --shield predicts
 refused 'nearest is noise' eval --task hand_over_wall --shield predict:nois=1
 refused 'off has no options' eval --task hand_over_wall --shield off:noise=1
 refused 'declares no guards' eval --task hand_over_wall --shield project
 refused 'outside' eval --task hand_over_wall --shield predict:block=0
+refused 'words project and predict' eval --task hand_over_wall --shield predict:predict=false
+refused '--resume takes its settings from the folder' train --resume whole --shield off
+refused 'not shared among ranks' train --task bandit --ranks 2 --shield predict
+refused 'beyond its proof' rollout --task hand_over_wall --shield predict --noise 0.1
+refused 'sees points' train --task grasp --set encoder=8,8 --set encoder_points=16 --envs 2 --shield predict
+check 'a refused run left its folder' test ! -d runs
+# what was played under a shield plays again without one, and not under another
+"$tool" rollout --task hand_over_wall --policy trained --seed 3 --shield predict --record played.npz > first || exit 1
+"$tool" rollout --policy played.npz > second || exit 1
+check 'a record of it ends elsewhere' test "$(grep hash first)" = "$(grep hash second)"
+refused 'as it was' rollout --policy played.npz --shield predict
+# a checkpoint without what the shield knew is no way to go on
+"$tool" train --task bandit --envs 2 --steps 200 --set horizon=20 --out without > out 2>&1 || { cat out; exit 1; }
+sed -i 's/"threads": 0,/"threads": 0, "shield": "predict",/' without/config.json
+"$tool" train --resume without --steps 400 > out 2>&1
+check "status of a resume without the shield's state: $(cat out)" test $? -eq 1
+check "a resume without the shield's state: $(cat out)" grep -q 'no state of the shield' out
+# every option is listed, and its words are completed
+"$tool" info shield > listed || exit 1
+for key in block look tries noise choose unproven; do check "info shield has no $key" grep -q "^$key " listed; done
+check 'the completion has no words' sh -c '"$0" completion bash | grep -q -- "--shield) words=.off project predict."' "$tool"
 
 "$tool" render --task hand_over_wall --policy trained --shield predict --seed 5 --strip 4 --size 120x90 --out strip.png --json > strip || exit 1
 check 'no picture' test -s strip.png
 check 'a strip without its counts' grep -q '"interventions":' strip
+# frames of steps that it changed are marked in the page
+if "$tool" render --task hand_over_wall --policy trained --shield predict --seed 2 --html page.html > page 2> err; then
+  check 'the page marks no frame' grep -q '"stepped_in":\[[0-9]' page.html
+  check 'the page does not say what a red border is' grep -q 'shield predict, a red border where it stepped in, in [1-9]' page.html
+else
+  check "no page: $(cat err)" grep -q 'no viewer library' err
+fi
 exit $failed
