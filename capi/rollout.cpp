@@ -87,7 +87,7 @@ class Shielded {
  public:
   Shielded(Agent& agent, Pool& pool, Shield* shield)
       : agent_(agent), pool_(pool), shield_(shield), foresight_(agent) {
-    before_.violations = pool.stats().violations;
+    violations_ = pool.violations();
     if (!shield) return;
     if (agent.eyes().points && shield->predicts())
       fail(Code::kUnsupported, "shield: the agent's encoder needs points, which copies do not have");
@@ -136,7 +136,7 @@ class Shielded {
 
   void count(Epoch* out) const {
     Ranks& ranks = agent_.ranks();
-    out->violations = ranks.total(pool_.stats().violations - before_.violations);
+    out->violations = ranks.total(pool_.violations() - violations_);
     if (!shield_) return;
     const ShieldCounts& now = shield_->counts();
     const int64_t unproven = now.unproven - counts_.unproven;
@@ -161,10 +161,9 @@ class Shielded {
   AgentForesight foresight_;
   ShieldLearn how_ = ShieldLearn::kOwn;
   float penalty_ = 0;
+  // Before the rollout.
   ShieldCounts counts_;
-  struct {
-    int64_t violations = 0;
-  } before_;
+  int64_t violations_ = 0;
 };
 
 // What the pool's worlds show to an agent with eyes.

@@ -299,14 +299,20 @@ PoolStats Pool::stats() const {
     s.task_failed += slot.counters.task_failed;
     s.unconverged += slot.counters.unconverged;
     s.slowed += slot.counters.slowed;
-    s.violations += slot.counters.violations;
     const double drift = slot.world->joint_drift();
     if (drift > s.joint_drift) s.joint_drift = drift;
     const double residual = slot.world->solver_residual();
     if (!(residual <= s.solver_residual)) s.solver_residual = residual;
   }
+  s.violations = violations();
   if (s.steps > 0) s.contacts_mean = static_cast<double>(contacts) / static_cast<double>(s.steps);
   return s;
+}
+
+int64_t Pool::violations() const {
+  int64_t sum = 0;
+  for (size_t i = 0; i < impl_->num(); ++i) sum += impl_->slots[i].counters.violations;
+  return sum;
 }
 
 }  // namespace rdm

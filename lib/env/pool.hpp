@@ -144,6 +144,7 @@ class Pool {
   World& world(int32_t env);
   const World& world(int32_t env) const;
   PoolStats stats() const;
+  int64_t violations() const;  // of the stats, without measuring worlds
   Workers& workers();
 
  private:
