@@ -195,8 +195,7 @@ Options read_options(const AgentConfig& config, const AlgoInfo& algo) {
   Options o;
   o.reserve(algo.num_options);
   o.add_table(algo.options, algo.num_options);
-  for (int32_t i = 0; i < config.num_options; ++i) o.set(config.options[i], kOwner);
-  o.set_lines(config.settings, kOwner);
+  o.set_all(config.options, config.num_options, config.settings, kOwner);
   for (int32_t i = 0; i < config.num_defaults; ++i) lay_default(o, algo, config.defaults[i]);
   lay_preset(o, config, algo.name);
   // A schedule that nobody asked for gives way.

@@ -343,6 +343,12 @@ size_t Options::print_lines(char* out, size_t capacity) const {
   return length;
 }
 
+Vector<char> Options::lines() const {
+  Vector<char> out(print_lines(nullptr, 0) + 1);
+  print_lines(out.data(), out.size());
+  return out;
+}
+
 void Options::set_default(const char* key, double number) {
   const int32_t i = find(key);
   if (i < 0) fail(Code::kInternal, "option %s is not declared", key);

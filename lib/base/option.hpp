@@ -125,7 +125,12 @@ class Options {
   // Lines key=value; spaces about either, '\r' and empty lines do not count. NULL: none. The errors of set,
   // with the number of the line; kArgument for a line without '='.
   void set_lines(const char* lines, const char* owner);
-  // The same for what a host gives, but for keys that are unknown: those are left for another table.
+  // What a host gives: options, then lines.
+  void set_all(const OptionInput* inputs, int32_t count, const char* lines, const char* owner) {
+    for (int32_t i = 0; i < count; ++i) set(inputs[i], owner);
+    set_lines(lines, owner);
+  }
+  // The same, but for keys that are unknown: those are left for another table.
   void set_known(const OptionInput* inputs, int32_t count, const char* lines, const char* owner);
   bool chosen() const;  // a row that chooses others was given
   bool knows(const char* key) const { return find(key) >= 0; }
@@ -153,9 +158,10 @@ class Options {
   // Current value as text ("0.5", "0.7..1.3", "egg") of kOptionTextSize bytes, which reads back exactly.
   // False for a text that is longer: it is cut.
   bool print(int32_t i, char* out) const;
-  // All values as lines for set_lines, but where a level draws for those that it draws, into at most `capacity` bytes (none when it is less than all need);
-  // the length without terminator.
+  // All values as lines for set_lines, but where a level draws for those that it draws, into at most
+  // `capacity` bytes (none when it is less than all need); the length without terminator.
   size_t print_lines(char* out, size_t capacity) const;
+  Vector<char> lines() const;  // these, with the terminator
   // Changes the default of one key (a task's or an algorithm's own default); bounds are checked.
   void set_default(const char* key, double number);
   void set_default(const char* key, const char* text);

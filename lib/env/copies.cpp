@@ -5,10 +5,9 @@ namespace rdm {
 Pool* make_copies(const Pool& of, int32_t num_envs, int32_t num_threads, const HostHooks& hooks) {
   // the settings as lines, so that options that a host gave hold there too
   constexpr char kBlind[] = "modality=state\n";
-  Vector<char> settings(of.options().print_lines(nullptr, 0) + sizeof kBlind + 1);
-  const size_t length = of.options().print_lines(settings.data(), settings.size());
-  settings[length] = '\n';
-  std::memcpy(settings.data() + length + 1, kBlind, sizeof kBlind);
+  Vector<char> settings = of.options().lines();
+  settings.pop_back();  // each line ends itself
+  settings.insert(settings.end(), kBlind, kBlind + sizeof kBlind);
   PoolConfig c;
   c.num_envs = num_envs;
   c.num_threads = num_threads > 0 ? num_threads : of.config().num_threads;

@@ -10,11 +10,6 @@ namespace {
 
 constexpr int32_t kMaxEnvs = 65536, kMaxThreads = 256;
 
-void set_all(const PoolConfig& config, const char* owner, Options* out) {
-  for (int32_t i = 0; i < config.num_options; ++i) out->set(config.options[i], owner);
-  out->set_lines(config.settings, owner);
-}
-
 }  // namespace
 
 // Of what decides a world's course: not of what is seen of it.
@@ -55,7 +50,7 @@ void ResolvedPoolConfig::read_options(const PoolConfig& c) {
   options.add_table(specs, count);
   specs = disturb_options(&count);
   options.add_table(specs, count);
-  set_all(c, info->name, &options);
+  options.set_all(c.options, c.num_options, c.settings, info->name);
 }
 
 TaskHandle make_task(const TaskInfo& info, const Options& options, const HostHooks& hooks, void* user) {

@@ -78,8 +78,7 @@ const OptionSpec* planner_options(int32_t* count) {
 
 void Planner::read_options(const PlannerConfig& c) {
   options_.add_table(kRows.specs, static_cast<int32_t>(kRows.size()));
-  for (int32_t i = 0; i < c.num_options; ++i) options_.set(c.options[i], "planner");
-  options_.set_lines(c.settings, "planner");
+  options_.set_all(c.options, c.num_options, c.settings, "planner");
   settings_ = kRows.read(options_);
   settings_.knots = std::min(settings_.knots, settings_.horizon);
   settings_.elites = std::min(settings_.elites, settings_.samples);
@@ -422,9 +421,8 @@ void Planner::act(const Pool& pool, int32_t env, float* action, PlanInfo* info) 
 
 // What has to agree for a state to be gone on with.
 uint64_t Planner::fingerprint() const {
-  Vector<char> lines(options_.print_lines(nullptr, 0) + 1);
-  const size_t length = options_.print_lines(lines.data(), lines.size());
-  uint64_t hash = hash_bytes(lines.data(), length);
+  const Vector<char> lines = options_.lines();
+  uint64_t hash = hash_bytes(lines.data(), lines.size() - 1);
   hash = hash_bytes(noise_std_, sz(action_dim_) * sizeof *noise_std_, hash);
   hash = hash_bytes(limit_, sz(cost_dim_) * sizeof *limit_, hash);
   const uint64_t layout = layout_hash(rollouts_->task());

@@ -68,8 +68,7 @@ const OptionSpec* shield_options(int32_t* count) {
 
 void Shield::read_options(const ShieldConfig& c) {
   options_.add_table(kRows.specs, static_cast<int32_t>(kRows.size()));
-  for (int32_t i = 0; i < c.num_options; ++i) options_.set(c.options[i], "shield");
-  options_.set_lines(c.settings, "shield");
+  options_.set_all(c.options, c.num_options, c.settings, "shield");
   set_ = kRows.read(options_);
   if (set_.copies == 0) return;
   worlds_ = set_.copies;
@@ -673,9 +672,8 @@ void Shield::keep_guards(CopiesTried* copies, int32_t each) const {
 // ---- state
 
 uint64_t Shield::fingerprint() const {
-  Vector<char> lines(options_.print_lines(nullptr, 0) + 1);
-  const size_t length = options_.print_lines(lines.data(), lines.size());
-  uint64_t hash = hash_bytes(lines.data(), length);
+  const Vector<char> lines = options_.lines();
+  uint64_t hash = hash_bytes(lines.data(), lines.size() - 1);
   hash = hash_bytes(budget_, sz(costs_) * sizeof *budget_, hash);
   const int32_t sizes[] = {n_, dim_, stride_, length_, num_policies_};
   hash = hash_bytes(sizes, sizeof sizes, hash);
