@@ -1,6 +1,6 @@
 // rdm_planner_*: planning in a pool's worlds, with a policy's proposals and an agent's critic.
 
-#include "capi/handles.hpp"
+#include "capi/frozen_mean.hpp"
 
 #if RDM_WITH_SIM
 #include "plan/planner.hpp"
@@ -12,28 +12,6 @@ namespace {
 
 constexpr size_t kFirstSize = offsetof(rdm_planner_config, stop);
 constexpr size_t kFirstInfoSize = offsetof(rdm_plan_info, iterations);
-
-#if RDM_WITH_POLICY
-// A policy's mean action.
-class Proposals final : public PlanPolicy {
- public:
-  void open(const HostHooks& hooks, const Policy* policy) {
-    policy_ = policy;
-    if (!policy) return;
-    bytes_ = policy->scratch_bytes(1);
-    arena_ = Arena(hooks, bytes_);
-    scratch_ = arena_.make<unsigned char>(bytes_);
-  }
-  void act(const float* obs, float* action) override { policy_->act(obs, 1, nullptr, action, scratch_); }
-  int32_t repeat() const override { return policy_->view().action_repeat; }
-
- private:
-  const Policy* policy_ = nullptr;
-  Arena arena_;
-  size_t bytes_ = 0;
-  unsigned char* scratch_ = nullptr;
-};
-#endif
 
 #if RDM_WITH_LEARN
 class Critics final : public PlanCritic {
@@ -61,7 +39,7 @@ struct rdm_planner {
   mutable char error[kErrorTextSize] = "";  // also of calls that only read
   Planner* planner = nullptr;
 #if RDM_WITH_POLICY
-  Proposals proposals;
+  FrozenMean proposals;
 #endif
 #if RDM_WITH_LEARN
   Critics critics;
@@ -81,7 +59,7 @@ void use_policy(const rdm_policy* policy, const rdm_pool* pool, rdm_planner* p, 
   check_policy(policy->policy->view(), spec);
   if (policy->policy->view().eyes.points)
     fail(Code::kUnsupported, "config.policy: it sees points, which plans are not tried out with");
-  p->proposals.open(p->hooks, policy->policy);
+  p->proposals.open(p->hooks, policy->policy, 1);
   config->policy = &p->proposals;
 }
 #else

@@ -13,7 +13,7 @@ using namespace rdm::capi;
 
 namespace {
 
-constexpr int32_t kMostHeld = 1000;
+constexpr int32_t kMostHeld = 1000, kBackupRows = 64;
 
 static_assert(RDM_MAX_GUARDS == kMostGuards);
 static_assert(static_cast<int>(RDM_SHIELD_PROJECTED) == static_cast<int>(ShieldKind::kProjected));
@@ -39,8 +39,8 @@ void add_policy(rdm_shield* s, const rdm_policy* policy) {
          steps);
   if (s->num_backups == Shield::kMostPolicies)
     fail(Code::kRange, "shield: it has %d policies already", s->num_backups);
-  Backup& backup = s->backups[s->num_backups];
-  backup.open(s->hooks, policy->policy);
+  FrozenMean& backup = s->backups[s->num_backups];
+  backup.open(s->hooks, policy->policy, kBackupRows);
   s->shield->add_policy(&backup);
   ++s->num_backups;
 }

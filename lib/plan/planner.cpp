@@ -237,7 +237,7 @@ bool Planner::propose(const Pool& pool, int32_t env) {
     if (!alive_[0] || !due)
       std::copy_n(before, action_dim_, action);
     else
-      policy_->act(b.obs, action);
+      policy_->act(b.obs, 1, action);
     for (int32_t j = 0; j < action_dim_; ++j)  // a network that overflows proposes nothing
       action[j] = std::isfinite(action[j]) ? clip_unit(action[j]) : before[j];
     if (!alive_[0] || t + 1 == settings_.horizon) continue;

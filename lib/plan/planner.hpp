@@ -15,6 +15,7 @@
 // config.stop: what the finished iterations made of the plan is the plan, as if there were no more of them.
 #pragma once
 #include "base/cancel.hpp"
+#include "env/mean_policy.hpp"
 #include "env/pool.hpp"
 #include "plan/knots.hpp"
 #include "plan/ranking.hpp"
@@ -42,15 +43,7 @@ struct PlanOptions {
   bool terminal_cost;
 };
 
-// Who proposes actions, one row at a time, and how good a state is; each a view of what somebody else owns.
-class PlanPolicy {
- public:
-  virtual void act(const float* obs, float* action) = 0;
-  virtual int32_t repeat() const = 0;  // control steps that it holds an action
-
- protected:
-  ~PlanPolicy() = default;
-};
+// How good a state is; a view of what somebody else owns.
 class PlanCritic {
  public:
   // value [rows] and cost [rows][num_costs()] of obs [rows][obs_dim].
@@ -71,7 +64,7 @@ struct PlannerConfig {
   const OptionInput* options = nullptr;
   int32_t num_options = 0;
   const char* settings = nullptr;
-  PlanPolicy* policy = nullptr;  // both outlive the planner; null: none
+  MeanPolicy* policy = nullptr;  // both outlive the planner; null: none
   PlanCritic* critic = nullptr;
   int32_t (*stop)(void* user, int64_t steps) = nullptr;  // not 0: no more of this plan; null: never
   void* user = nullptr;                                  // given to stop
@@ -142,7 +135,7 @@ class Planner {
   PlanOptions settings_;  // what options_ say, within each other's bounds
   CourseRule rule_;
   double limit_[kMaxTaskCosts] = {};  // of an episode, < 0: none
-  PlanPolicy* policy_ = nullptr;
+  MeanPolicy* policy_ = nullptr;
   PlanCritic* critic_ = nullptr;
   int32_t (*stop_)(void*, int64_t) = nullptr;
   void* user_ = nullptr;

@@ -155,7 +155,7 @@ void Shield::need_tries(int32_t backups) const {
     fail(Code::kRange, "tries: %d are fewer than the backups, %d with who proposes", set_.tries, backups + 1);
 }
 
-void Shield::add_policy(ShieldPolicy* policy) {
+void Shield::add_policy(MeanPolicy* policy) {
   if (!set_.predict)
     fail(Code::kArgument, "policy: with predict=false nothing is tried, so there is no backup");
   if (num_policies_ == kMostPolicies) fail(Code::kRange, "shield: it has %d policies already", kMostPolicies);

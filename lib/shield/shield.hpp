@@ -31,21 +31,13 @@
 #include <algorithm>
 
 #include "base/rng.hpp"
+#include "env/mean_policy.hpp"
 #include "shield/copies_tried.hpp"
 #include "shield/guards.hpp"
 
 namespace rdm {
 
 const OptionSpec* shield_options(int32_t* count);
-
-// A backup: the mean action of a frozen policy; a view of what somebody else owns.
-class ShieldPolicy {
- public:
-  virtual void act(const float* obs, int32_t rows, float* action) = 0;
-
- protected:
-  ~ShieldPolicy() = default;
-};
 
 // What will be proposed in the decisions to come, by the one who proposed the first.
 class Foresight {
@@ -84,12 +76,13 @@ enum class ShieldKind : int32_t {
 // What the shield says of a world's last decision.
 struct ShieldRow {
   ShieldKind kind = ShieldKind::kOwn;
-  int32_t column =
-      -1;             // cost that the refused way would have met; -1: nothing was refused, or it diverged. Of
-                      // kProjected: the broken guard's, -1: a host's own
+  // Cost that the refused way would have met, -1: nothing was refused, or it diverged; of kProjected the broken
+  // guard's, -1: a host's own.
+  int32_t column = -1;
   int32_t ahead = 0;  // control steps until then
-  int32_t backup = -1;  // that the plan goes on by: policies, then zero, then hold, then what the foresight
-                        // would do without noise; -1: no branch
+  // That the plan goes on by: policies, then zero, then hold, then what the foresight would do without noise; -1: no
+  // branch.
+  int32_t backup = -1;
 };
 
 struct ShieldCounts {
@@ -111,7 +104,7 @@ class Shield {
 
   static Shield* create(const ShieldConfig& config);
   static void destroy(Shield* s);
-  void add_policy(ShieldPolicy* policy);  // a backup behind those that it has; it outlives the shield
+  void add_policy(MeanPolicy* policy);  // a backup behind those that it has; it outlives the shield
   // As Guards::add and Guards::set.
   void add_guard(const float* normal, float bound);
   void set_guard(int32_t env, int32_t i, const float* normal, float bound);
@@ -139,10 +132,8 @@ class Shield {
 
   int32_t num_envs() const { return n_; }
   int32_t action_dim() const { return dim_; }
-  int32_t cost_dim() const { return costs_; }
   int32_t steps() const { return steps_; }
   bool predicts() const { return set_.predict; }
-  int32_t length() const { return length_; }  // decisions of a plan, at most
   const Options& options() const { return options_; }
 
   // Plans, streams and counts: a shield of the same config that reads them goes on with the same bytes, beside
@@ -243,7 +234,7 @@ class Shield {
   HostHooks hooks_;
   Options options_;
   ShieldOptions set_{};
-  ShieldPolicy* policies_[kMostPolicies] = {};
+  MeanPolicy* policies_[kMostPolicies] = {};
   int32_t num_policies_ = 0, num_own_ = 0;  // backups that the shield has whoever proposes
   // Of this call: who foresees, and the backups in the order in which they are tried.
   Foresight* foresight_ = nullptr;
