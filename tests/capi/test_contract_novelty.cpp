@@ -5,20 +5,11 @@
 
 #include "contract.hpp"
 #include "heap_count.hpp"
+#include "policies.hpp"
 
 namespace {
 
 using Bytes = std::vector<unsigned char>;
-
-struct PolicyEnd {
-  void operator()(rdm_policy* p) const { rdm_policy_destroy(p); }
-};
-using Owned = std::unique_ptr<rdm_policy, PolicyEnd>;
-Owned read(const Bytes& bytes) {
-  rdm_policy* p = nullptr;
-  EXPECT_EQ(rdm_policy_read(&p, bytes.data(), bytes.size()), RDM_OK) << rdm_last_error();
-  return Owned(p);
-}
 
 int32_t tells(const rdm_policy* p) {
   auto info = RDM_INIT(rdm_policy_info);
@@ -95,7 +86,7 @@ Bytes without(const Bytes& file, const char* tag, size_t* at = nullptr) {
 TEST(ContractNovelty, OfTrainingAndFarFromIt) {
   Hands hands;
   hands.learn();
-  const Owned p = read(policy_bytes(hands.agent));
+  const Policy p = read_policy(policy_bytes(hands.agent));
   ASSERT_EQ(tells(p.get()), 1);
   const auto count = static_cast<int32_t>(hands.rows.size() / hands.dim);
   const auto seen = novelty(p.get(), hands.rows.data(), count);
@@ -132,13 +123,14 @@ TEST(ContractNovelty, OfTrainingAndFarFromIt) {
 
 TEST(ContractNovelty, WhatIsRefused) {
   Hands hands;
-  const Owned fresh = read(policy_bytes(hands.agent));
+  const Policy fresh = read_policy(policy_bytes(hands.agent));
   hands.learn();
   const Bytes file = policy_bytes(hands.agent), old = without(file, "SEEN");
   EXPECT_LT(old.size(), file.size());
   std::vector<float> obs = hands.rows;
   float out[2] = {-1, -1};
-  for (const Owned& p : {read(old), read(policy_bytes(Hands("hidden=16\nnormalize_obs=off").agent))}) {
+  for (const Policy& p :
+       {read_policy(old), read_policy(policy_bytes(Hands("hidden=16\nnormalize_obs=off").agent))}) {
     EXPECT_EQ(tells(p.get()), 0);
     EXPECT_EQ(rdm_policy_novelty(p.get(), obs.data(), 1, out), RDM_ERROR_UNSUPPORTED);
   }
@@ -148,7 +140,7 @@ TEST(ContractNovelty, WhatIsRefused) {
       rdm_last_error(),
       "novelty: the policy does not tell which rows are usual; an agent with normalize_obs writes it, "
       "once it has learned from 1000 rows");
-  const Owned p = read(file);
+  const Policy p = read_policy(file);
   obs[hands.dim + 3] = std::numeric_limits<float>::quiet_NaN();
   EXPECT_EQ(rdm_policy_novelty(p.get(), obs.data(), 2, out), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_policy_novelty(p.get(), obs.data(), 0, out), RDM_ERROR_RANGE);
@@ -163,7 +155,7 @@ TEST(ContractNovelty, GoesWithThePolicyWhereverItGoes) {
   const Bytes before = policy_bytes(hands.agent);
   hands.learn();
   const Bytes file = policy_bytes(hands.agent);
-  const auto wanted = novelty(read(file).get(), hands.rows.data(), 100);
+  const auto wanted = novelty(read_policy(file).get(), hands.rows.data(), 100);
   // into a caller's memory, of which it takes no more, and into a policy that told nothing
   size_t needed = 0, with = 0;
   ASSERT_EQ(rdm_policy_read_memory(before.data(), before.size(), &needed), RDM_OK);
@@ -178,14 +170,14 @@ TEST(ContractNovelty, GoesWithThePolicyWhereverItGoes) {
   EXPECT_EQ(heap_count(), calls);
   EXPECT_EQ(out, wanted);
   rdm_policy_destroy(inside);
-  const Owned p = read(before);
+  const Policy p = read_policy(before);
   ASSERT_EQ(rdm_policy_update_from(p.get(), hands.agent), RDM_OK) << rdm_last_error();
   EXPECT_EQ(novelty(p.get(), hands.rows.data(), 100), wanted);
   // and it acts as a file without
   std::vector<float> action[2] = {std::vector<float>(40), std::vector<float>(40)};
   const Bytes old = without(file, "SEEN");
   for (const int i : {0, 1}) {
-    const Owned q = read(i ? old : file);
+    const Policy q = read_policy(i ? old : file);
     Bytes scratch(rdm_policy_scratch(q.get(), 1));
     ASSERT_EQ(rdm_policy_act(q.get(), hands.rows.data(), 1, nullptr, action[i].data(), scratch.data(),
                              scratch.size()),

@@ -3,20 +3,11 @@
 
 #include "contract.hpp"
 #include "heap_count.hpp"
+#include "policies.hpp"
 
 namespace {
 
 using Bytes = std::vector<unsigned char>;
-
-struct PolicyEnd {
-  void operator()(rdm_policy* p) const { rdm_policy_destroy(p); }
-};
-using Owned = std::unique_ptr<rdm_policy, PolicyEnd>;
-Owned read(const Bytes& bytes) {
-  rdm_policy* p = nullptr;
-  EXPECT_EQ(rdm_policy_read(&p, bytes.data(), bytes.size()), RDM_OK) << rdm_last_error();
-  return Owned(p);
-}
 
 rdm_policy_info info_of(const rdm_policy* p) {
   rdm_policy_info info = RDM_INIT(rdm_policy_info);
@@ -69,7 +60,7 @@ TEST(PolicyInMemory, ActsAsTheOneOfTheHeapAtAnyAddress) {
   for (const char* kind : kKinds) {
     SCOPED_TRACE(kind);
     Bytes file = file_of(kind);
-    const Owned on_heap = read(file);
+    const Policy on_heap = read_policy(file);
     size_t needed = 0;
     ASSERT_EQ(rdm_policy_read_memory(file.data(), file.size(), &needed), RDM_OK) << rdm_last_error();
     Bytes memory(needed + 65);
@@ -149,7 +140,7 @@ TEST(PolicySample, IsTheActionBeforeTheClipBesideItsMean) {
   for (const char* kind : kKinds) {
     if (std::strstr(kind, "encoder")) continue;
     SCOPED_TRACE(kind);
-    const Owned p = read(file_of(kind));
+    const Policy p = read_policy(file_of(kind));
     const float noise[8] = {4, -0.3f, 0, -5, 0.1f, 1, -3, 0.5f};
     Bytes scratch(rdm_policy_scratch(p.get(), 4));
     float action[8], mean[8], alone[8], bare[8];
@@ -180,7 +171,7 @@ TEST(PolicySample, IsTheActionBeforeTheClipBesideItsMean) {
     EXPECT_EQ(rdm_policy_sample(p.get(), bad, 4, noise, action, mean, scratch.data(), scratch.size()),
               RDM_ERROR_ARGUMENT);
   }
-  const Owned sees = read(file_of(kKinds[4]));
+  const Policy sees = read_policy(file_of(kKinds[4]));
   Bytes scratch(rdm_policy_scratch(sees.get(), 1));
   float action[2];
   EXPECT_EQ(rdm_policy_sample(sees.get(), kObs, 1, nullptr, action, nullptr, scratch.data(), scratch.size()),
@@ -194,7 +185,7 @@ TEST(PolicySample, SaysWhatTheAgentActedOn) {
   float by_agent[8], action[8], mean[8], agent_mean[8], noise[8] = {};
   ASSERT_EQ(rdm_agent_act(a, kObs, RDM_ACT_SAMPLE, by_agent), RDM_OK);
   ASSERT_EQ(rdm_agent_act(a, kObs, RDM_ACT_MEAN, agent_mean), RDM_OK);
-  const Owned p = read(policy_bytes(a));  // after the act, which moved the normaliser
+  const Policy p = read_policy(policy_bytes(a));  // after the act, which moved the normaliser
   float log_std[2];
   ASSERT_EQ(rdm_policy_get_tensor(p.get(), "actor.log_std", log_std, 2), RDM_OK);
   for (int i = 0; i < 8; ++i) noise[i] = (by_agent[i] - agent_mean[i]) / std::exp(log_std[i % 2]);
@@ -217,7 +208,7 @@ std::vector<rdm_field_info> fields_of(const rdm_policy* p) {
 }
 
 TEST(PolicyFields, AreThoseOfTheConfig) {
-  const Owned p = read(file_of(""));
+  const Policy p = read_policy(file_of(""));
   const auto fields = fields_of(p.get());
   ASSERT_EQ(fields.size(), 2u);
   for (size_t i = 0; i < 2; ++i) {
@@ -233,7 +224,7 @@ TEST(PolicyFields, AreThoseOfTheConfig) {
   EXPECT_EQ(rdm_policy_field_at(p.get(), 0, nullptr), RDM_ERROR_ARGUMENT);
 
   rdm_agent* a = make_agent(agent_config());
-  EXPECT_EQ(info_of(read(policy_bytes(a)).get()).num_fields, 0) << "a config without fields";
+  EXPECT_EQ(info_of(read_policy(policy_bytes(a)).get()).num_fields, 0) << "a config without fields";
   rdm_agent_destroy(a);
 }
 
@@ -244,7 +235,7 @@ TEST(PolicyFields, AreTextsThatCanBePrinted) {
   c.fields = odd;
   c.num_fields = 1;
   rdm_agent* a = make_agent(c);
-  const Owned p = read(policy_bytes(a));
+  const Policy p = read_policy(policy_bytes(a));
   rdm_agent_destroy(a);
   const auto fields = fields_of(p.get());
   ASSERT_EQ(fields.size(), 1u);
@@ -252,13 +243,13 @@ TEST(PolicyFields, AreTextsThatCanBePrinted) {
   EXPECT_STREQ(fields[0].unit, "");
 }
 
-Owned policy_for(const rdm_pool* pool) {
+Policy policy_for(const rdm_pool* pool) {
   rdm_agent_config c;
   EXPECT_EQ(rdm_agent_config_init(&c, sizeof c), RDM_OK);
   EXPECT_EQ(rdm_agent_config_for_pool(&c, pool), RDM_OK);
   c.settings = "hidden=8";
   rdm_agent* a = make_agent(c);
-  Owned p = read(policy_bytes(a));
+  Policy p = read_policy(policy_bytes(a));
   rdm_agent_destroy(a);
   return p;
 }
@@ -271,7 +262,7 @@ rdm_pool* pool_of(const char* task, const char* settings = nullptr) {
 
 TEST(PolicyFields, OfAPoolAreThePools) {
   rdm_pool* pool = pool_of("hand_over_safe_finger");
-  const Owned p = policy_for(pool);
+  const Policy p = policy_for(pool);
   const auto fields = fields_of(p.get());
   const rdm_spec spec = spec_of(pool);
   ASSERT_EQ(static_cast<int32_t>(fields.size()), spec.num_fields);
@@ -295,7 +286,7 @@ std::string refusal(const rdm_policy* p, const rdm_spec& spec) {
 // The fields of the pool that the spec is of; when it has ended they are not known.
 TEST(PolicyFields, AreNamedWhereALayoutDiffers) {
   rdm_pool* own = pool_of("ball_circle");
-  const Owned p = policy_for(own);
+  const Policy p = policy_for(own);
   for (const char* task : {"car_circle", "point_goal1"}) {
     SCOPED_TRACE(task);
     rdm_pool* other = pool_of(task);
@@ -374,15 +365,15 @@ TEST(PolicyUpdate, MakesThePolicyThatTheAgentWouldWrite) {
     const Bytes before = policy_bytes(a), old = without_later(before);
     EXPECT_LT(old.size(), before.size());
     learn(a, sees);
-    const Owned now = read(policy_bytes(a));
+    const Policy now = read_policy(policy_bytes(a));
     size_t needed = 0;
     ASSERT_EQ(rdm_policy_read_memory(before.data(), before.size(), &needed), RDM_OK);
     Bytes memory(needed);
     rdm_policy* inside = nullptr;
     ASSERT_EQ(rdm_policy_read_in(&inside, before.data(), before.size(), memory.data(), needed), RDM_OK);
-    const Owned policies[] = {read(before), read(old), Owned(inside)};
+    const Policy policies[] = {read_policy(before), read_policy(old), Policy(inside)};
     EXPECT_EQ(info_of(policies[1].get()).generation, 0u);
-    for (const Owned& p : policies) {
+    for (const Policy& p : policies) {
       EXPECT_NE(everything(p.get()), everything(now.get()));
       EXPECT_NE(info_of(p.get()).generation, info_of(now.get()).generation);
       const int64_t calls = heap_count();
@@ -413,7 +404,7 @@ TEST(PolicyUpdate, SaysWhatDiffersAndChangesNothing) {
   for (const auto& [settings, what] : kinds) {
     SCOPED_TRACE(settings);
     rdm_agent* other = agent_of(settings);
-    const Owned p = read(policy_bytes(other));
+    const Policy p = read_policy(policy_bytes(other));
     rdm_agent_destroy(other);
     const auto before = everything(p.get());
     EXPECT_EQ(rdm_policy_update_from(p.get(), a), RDM_ERROR_ARGUMENT);
@@ -425,7 +416,7 @@ TEST(PolicyUpdate, SaysWhatDiffersAndChangesNothing) {
   rdm_agent* hashed = make_agent(c);
   c.layout_hash = 2;
   rdm_agent* other = make_agent(c);
-  const Owned p = read(policy_bytes(other));
+  const Policy p = read_policy(policy_bytes(other));
   EXPECT_EQ(rdm_policy_update_from(p.get(), hashed), RDM_ERROR_ARGUMENT);
   EXPECT_STREQ(rdm_agent_error(hashed), "policy: layout_hash differs from the agent's");
   rdm_agent_destroy(other);
@@ -437,7 +428,7 @@ TEST(PolicyUpdate, SaysWhatDiffersAndChangesNothing) {
 
 TEST(PolicyGeneration, IsTheEpochAndTheNetwork) {
   rdm_agent* a = agent_of("");
-  const auto generation = [&] { return info_of(read(policy_bytes(a)).get()).generation; };
+  const auto generation = [&] { return info_of(read_policy(policy_bytes(a)).get()).generation; };
   const uint64_t first = generation();
   EXPECT_EQ(static_cast<uint32_t>(first), 0u);
   EXPECT_NE(first, 0u);

@@ -5,9 +5,8 @@
 #include <limits>
 #include <string>
 
-#include "contract.hpp"
 #include "heap_count.hpp"
-#include "owned.hpp"
+#include "shields.hpp"
 
 namespace {
 
@@ -21,37 +20,15 @@ Pool pool_of(const char* task, const char* settings = "", int32_t envs = 6) {
   return p;
 }
 Shield shield_of(const Pool& pool, const char* settings, const double* budgets = nullptr, int32_t steps = 0) {
-  rdm_shield_config c;
-  EXPECT_EQ(rdm_shield_config_init(&c, sizeof c), RDM_OK);
-  c.pool = pool.get();
-  c.settings = settings;
+  rdm_shield_config c = shield_config(pool, settings);
   c.budgets = budgets;
   c.steps = steps;
-  rdm_shield* s = nullptr;
-  EXPECT_EQ(rdm_shield_create(&s, &c), RDM_OK) << rdm_last_error();
-  return Shield(s);
+  return shield_of(c);
 }
 constexpr char kProject[] = "predict=false";
 
 size_t width_of(const Pool& pool) {
   return static_cast<size_t>(spec_of(pool.get()).action_dim);
-}
-rdm_shield_stats stats_of(const Shield& s) {
-  auto out = RDM_INIT(rdm_shield_stats);
-  EXPECT_EQ(rdm_shield_get_stats(s.get(), &out), RDM_OK);
-  return out;
-}
-rdm_shield_row row_of(const Shield& s, const Pool& pool, int32_t env) {
-  auto out = RDM_INIT(rdm_shield_row);
-  EXPECT_EQ(rdm_shield_get_row(s.get(), pool.get(), env, &out), RDM_OK);
-  return out;
-}
-std::vector<unsigned char> state_of(const Shield& s) {
-  size_t n = 0;
-  EXPECT_EQ(rdm_shield_write_state(s.get(), nullptr, 0, &n), RDM_OK);
-  std::vector<unsigned char> out(n);
-  EXPECT_EQ(rdm_shield_write_state(s.get(), out.data(), n, &n), RDM_OK);
-  return out;
 }
 std::vector<rdm_guard> guards_of(const Pool& pool) {
   std::vector<rdm_guard> out;

@@ -5,21 +5,14 @@
 #include <limits>
 #include <string>
 
-#include "contract.hpp"
 #include "heap_count.hpp"
-#include "owned.hpp"
+#include "policies.hpp"
+#include "shields.hpp"
 
 namespace {
 
 // Actions that are held have effects.
 constexpr char kHeld[] = "action_repeat=4";
-
-Policy shipped(const char* task) {
-  rdm_policy* p = nullptr;
-  const std::string path = std::string(RDM_TEST_DATA) + "/../examples/policies/" + task + ".rdm";
-  EXPECT_EQ(rdm_policy_read_file(&p, path.c_str()), RDM_OK) << rdm_last_error();
-  return Policy(p);
-}
 
 Pool pool_of(const char* task, const char* settings = "", int32_t envs = 8, int32_t threads = 0,
              int32_t autoreset = RDM_AUTORESET_SAME_STEP, uint64_t seed = 3) {
@@ -34,46 +27,15 @@ Pool pool_of(const char* task, const char* settings = "", int32_t envs = 8, int3
   return p;
 }
 
-rdm_shield_config config_of(const Pool& pool, const char* settings = "") {
-  rdm_shield_config c;
-  EXPECT_EQ(rdm_shield_config_init(&c, sizeof c), RDM_OK);
-  c.pool = pool.get();
-  c.settings = settings;
-  c.seed = 5;
-  return c;
-}
-Shield shield_of(const rdm_shield_config& c) {
-  rdm_shield* s = nullptr;
-  EXPECT_EQ(rdm_shield_create(&s, &c), RDM_OK) << rdm_last_error();
-  return Shield(s);
-}
 Shield shield_of(const Pool& pool, const char* settings = "") {
-  return shield_of(config_of(pool, settings));
+  return shield_of(shield_config(pool, settings));
 }
 
-rdm_shield_stats stats_of(const Shield& s) {
-  auto out = RDM_INIT(rdm_shield_stats);
-  EXPECT_EQ(rdm_shield_get_stats(s.get(), &out), RDM_OK);
-  return out;
-}
-rdm_shield_row row_of(const Shield& s, const Pool& pool, int32_t env) {
-  auto out = RDM_INIT(rdm_shield_row);
-  EXPECT_EQ(rdm_shield_get_row(s.get(), pool.get(), env, &out), RDM_OK);
-  return out;
-}
 int64_t violations_of(const Pool& pool) {
   auto out = RDM_INIT(rdm_pool_stats);
   EXPECT_EQ(rdm_pool_get_stats(pool.get(), &out), RDM_OK);
   return out.violations;
 }
-std::vector<unsigned char> state_of(const Shield& s) {
-  size_t n = 0;
-  EXPECT_EQ(rdm_shield_write_state(s.get(), nullptr, 0, &n), RDM_OK);
-  std::vector<unsigned char> out(n);
-  EXPECT_EQ(rdm_shield_write_state(s.get(), out.data(), n, &n), RDM_OK);
-  return out;
-}
-
 // Random actions, or a policy's, looked at.
 void play(const Pool& pool, const Shield& shield, int32_t steps, const rdm_policy* policy = nullptr,
           int32_t n = 32) {
@@ -105,7 +67,7 @@ TEST(Shields, LetNoCostComeWhateverIsProposed) {
     play(free, {}, steps, player);
     EXPECT_GT(violations_of(free), 0) << task << ": there is nothing to shield from";
     const Pool pool = pool_of(task, settings, 32);
-    rdm_shield_config c = config_of(pool);
+    rdm_shield_config c = shield_config(pool);
     c.policy = backup;
     const Shield shield = shield_of(c);
     play(pool, shield, steps, player);
@@ -122,7 +84,7 @@ TEST(Shields, LetNoCostComeWhateverIsProposed) {
 TEST(Shields, KeepBudgets) {
   const auto most = [](double budget) {
     const Pool pool = pool_of("hand_over_safe_joint", kHeld, 6);
-    rdm_shield_config c = config_of(pool);
+    rdm_shield_config c = shield_config(pool);
     std::vector<double> budgets(static_cast<size_t>(spec_of(pool.get()).cost_dim), -1);
     budgets[0] = budget;
     c.budgets = budgets.data();
@@ -228,7 +190,7 @@ TEST(Shields, KnowDrawnWorldsOnlyByExactCopies) {
   const Policy policy = shipped("hand_over_wall");
   const auto violations = [&](const char* settings) {
     const Pool pool = pool_of("hand_over_wall", "action_repeat=2\nlevel=3", 16);
-    rdm_shield_config c = config_of(pool, settings);
+    rdm_shield_config c = shield_config(pool, settings);
     c.policy = policy.get();
     const Shield shield = settings ? shield_of(c) : Shield();
     play(pool, shield, 74, policy.get(), 16);
@@ -245,7 +207,7 @@ TEST(Shields, KnowDrawnWorldsOnlyByExactCopies) {
 std::vector<unsigned char> course_of(int32_t threads, bool resumed) {
   const Pool pool = pool_of("reorient", "action_repeat=3", 7, threads);
   const Policy backup = shipped("reorient");
-  rdm_shield_config c = config_of(pool, "block=4\nnoise=0.5");
+  rdm_shield_config c = shield_config(pool, "block=4\nnoise=0.5");
   c.policy = backup.get();
   c.num_threads = threads;
   Shield shield = shield_of(c);
@@ -303,7 +265,7 @@ TEST(Shields, TakeNothingFromTheHeap) {
   if (!kHeapIsCounted) GTEST_SKIP() << "the sanitizer counts";
   const Pool pool = pool_of("reorient", "action_repeat=3", 4);
   const Policy backup = shipped("reorient");
-  rdm_shield_config c = config_of(pool);
+  rdm_shield_config c = shield_config(pool);
   c.policy = backup.get();
   const Shield shield = shield_of(c);
   play(pool, shield, 3);
@@ -331,7 +293,7 @@ Learned learn(const char* task, const char* pool_settings, const char* agent_set
   const Agent agent(make_agent(c));
   Shield shield;
   if (shield_settings) {
-    rdm_shield_config s = config_of(pool, shield_settings);
+    rdm_shield_config s = shield_config(pool, shield_settings);
     s.budgets = budgets;
     s.steps = 4;
     shield = shield_of(s);
@@ -402,18 +364,18 @@ TEST(ShieldRefusals, NameWhatIsWrong) {
     EXPECT_NE(std::strstr(rdm_last_error(), text), nullptr) << rdm_last_error();
     rdm_shield_destroy(s);
   };
-  rdm_shield_config c = config_of(pool);
+  rdm_shield_config c = shield_config(pool);
   c.steps = -1;
   refused(c, "config.steps");
-  c = config_of(pool, "blok=3");
+  c = shield_config(pool, "blok=3");
   refused(c, "block");
-  c = config_of(pool, "tries=1");
+  c = shield_config(pool, "tries=1");
   refused(c, "tries");
-  c = config_of(pool);
+  c = shield_config(pool);
   const double none[16] = {-1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
   c.budgets = none;
   refused(c, "budget");
-  c = config_of(pool);
+  c = shield_config(pool);
   c.num_threads = 1000;
   refused(c, "num_threads");
 

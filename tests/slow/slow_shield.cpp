@@ -1,8 +1,8 @@
 // A million control steps of random actions in each hand task, and not one that costs: under a shield.
 #include <string>
 
-#include "contract.hpp"
-#include "owned.hpp"
+#include "policies.hpp"
+#include "shields.hpp"
 
 namespace {
 
@@ -22,20 +22,10 @@ TEST_P(ShieldedTask, NeverCostsUnderRandomActions) {
   c.num_threads = 2;
   const Pool pool(make_pool(c));
   ASSERT_EQ(rdm_pool_reset(pool.get(), nullptr, nullptr), RDM_OK);
-  Policy policy;
-  if (needs_policy) {
-    rdm_policy* p = nullptr;
-    const std::string path = std::string(RDM_TEST_DATA) + "/../examples/policies/" + task + ".rdm";
-    ASSERT_EQ(rdm_policy_read_file(&p, path.c_str()), RDM_OK) << rdm_last_error();
-    policy.reset(p);
-  }
-  rdm_shield_config s;
-  ASSERT_EQ(rdm_shield_config_init(&s, sizeof s), RDM_OK);
-  s.pool = pool.get();
+  const Policy policy = needs_policy ? shipped(task) : Policy();
+  rdm_shield_config s = shield_config(pool);
   s.policy = policy.get();
-  rdm_shield* made = nullptr;
-  ASSERT_EQ(rdm_shield_create(&made, &s), RDM_OK) << rdm_last_error();
-  const Shield shield(made);
+  const Shield shield = shield_of(s);
   const rdm_buffers b = buffers_of(pool.get());
   auto stats = RDM_INIT(rdm_pool_stats);
   while (stats.steps < kSteps) {
@@ -46,8 +36,7 @@ TEST_P(ShieldedTask, NeverCostsUnderRandomActions) {
     ASSERT_EQ(rdm_pool_get_stats(pool.get(), &stats), RDM_OK);
     ASSERT_EQ(stats.violations, 0) << "after " << stats.steps << " control steps";
   }
-  auto done = RDM_INIT(rdm_shield_stats);
-  ASSERT_EQ(rdm_shield_get_stats(shield.get(), &done), RDM_OK);
+  const rdm_shield_stats done = stats_of(shield);
   EXPECT_EQ(done.unproven, 0);
   std::printf("%s: %lld control steps, %lld decisions, %lld refused, %.1f copied a step\n", task.c_str(),
               static_cast<long long>(stats.steps), static_cast<long long>(done.decisions),
