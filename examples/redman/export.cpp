@@ -1,5 +1,6 @@
 // `export`: a policy as a file for other programs.
 #include <redman/sense.hpp>
+#include <redman/shield.hpp>
 
 #include "commands.hpp"
 #include "common/files.hpp"
@@ -8,12 +9,13 @@
 #include "network/c_source.hpp"
 #include "network/probe.hpp"
 #include "play/actor.hpp"
+#include "play/shield_word.hpp"
 
 namespace tool {
 namespace {
 
 struct ExportFlags {
-  std::string policy, onnx, safetensors, c, name, probe;
+  std::string policy, onnx, safetensors, c, name, probe, shield = "off";
   bool int8 = false, name_given = false;
   int32_t probes = 1000;
   uint64_t seed = 0;
@@ -57,7 +59,7 @@ void play_rows(redman::Pool pool, const ActorChoice& choice, std::vector<float>&
 
 // Random observations and what the policy does; of one with eyes, beside random clouds and played ones.
 Json probe_json(const redman::Policy& policy, const Network& network, const ActorChoice& choice,
-                const ExportFlags& flags) {
+                const ActionBounds& bounds, const ExportFlags& flags) {
   const auto rows = static_cast<size_t>(flags.probes);
   auto obs = probe_observations(network, rows, flags.seed);
   Clouds clouds = probe_clouds(network, rows, flags.seed);
@@ -67,7 +69,9 @@ Json probe_json(const redman::Policy& policy, const Network& network, const Acto
     if (auto pool = world_of(policy, choice, flags.seed))
       play_rows(std::move(*pool), choice, obs, clouds), played = true;
   Json json = {{"rows", flags.probes}, {"obs_dim", network.obs_dim}, {"action_dim", network.action_dim}};
-  json["action"] = mean_actions(policy, obs, clouds);
+  std::vector<float> actions = mean_actions(policy, obs, clouds);
+  hold_to(bounds, actions);
+  json["action"] = std::move(actions);
   json["obs"] = std::move(obs);
   if (eyes.points == 0) return json;
   json["num_points"] = eyes.points;
@@ -107,10 +111,37 @@ std::string preset_of(int32_t obs_dim, const std::vector<rdm_field_info>& fields
   return "";
 }
 
+// What the guards of the first cost leave of [-1, 1].
+ActionBounds bounds_of(const std::optional<redman::Pool>& pool) {
+  std::vector<float> normals, bounds;
+  const std::vector<redman::Guard> guards = pool ? redman::guards(*pool) : std::vector<redman::Guard>();
+  for (const redman::Guard& g : guards) {
+    if (g.info.column != 0) continue;
+    if (g.info.entry < 0)
+      throw Usage(
+          "--shield project: a guard of the task is about several entries of the action, and the C file has "
+          "bounds of single ones alone; project what it gives by rdm_project");
+    normals.insert(normals.end(), g.normal.begin(), g.normal.end());
+    bounds.push_back(g.info.bound);
+  }
+  if (bounds.empty())
+    throw Usage(
+        "--shield project: the policy's task declares no guards with the options of its run; throws do "
+        "with cost_mode=command");
+  const std::vector<float> ends[] = {std::vector<float>(guards[0].normal.size(), -1.0f),
+                                     std::vector<float>(guards[0].normal.size(), 1.0f)};
+  return {redman::project(normals, bounds, ends[0].data(), ends[0].size()),
+          redman::project(normals, bounds, ends[1].data(), ends[1].size())};
+}
+
 Report run_export(const ExportFlags& flags) {
   if (flags.onnx.empty() && flags.safetensors.empty() && flags.c.empty() && flags.probe.empty())
     throw Usage("export: nothing to write; give --c FILE, --onnx FILE, --safetensors FILE or --probe FILE");
   if (flags.name_given) check_c_name(flags.name);
+  const ShieldWord shield = read_shield_word(flags.shield);
+  if (shield.on && (shield.predicts || flags.shield.find(':') != std::string::npos))
+    throw Usage("--shield " + flags.shield +
+                ": a C file can project alone, without options: --shield project");
   const ActorChoice choice = choose_actor(flags.policy);
   if (choice.file.empty() || choice.recording)
     throw Usage("--policy " + flags.policy +
@@ -120,6 +151,7 @@ Report run_export(const ExportFlags& flags) {
   const auto world = world_of(policy, choice, 0);  // lends the names of its fields
   const std::vector<rdm_field_info> fields = fields_of(world);
   const std::vector<int32_t> columns = policy_columns(policy.get());
+  const ActionBounds bounds = shield.on ? bounds_of(world) : ActionBounds();
   if (const std::string preset = preset_of(network.obs_dim, fields, columns); !preset.empty())
     network.metadata.push_back({"observation_preset", preset});
   Json json = {{"policy", choice.file}};
@@ -134,7 +166,7 @@ Report run_export(const ExportFlags& flags) {
   if (!flags.safetensors.empty()) write("safetensors", flags.safetensors, safetensors_bytes(network));
   if (!flags.c.empty()) {
     const std::string name = flags.name_given ? flags.name : c_name_of(policy.info().task);
-    const CSource source = c_source(policy, network, name, seen_fields(fields, columns), flags.int8);
+    const CSource source = c_source(policy, network, name, seen_fields(fields, columns), bounds, flags.int8);
     write("c", flags.c, source.text);
     json["file"] = flags.c;
     json["bytes"] = source.text.size();
@@ -146,7 +178,8 @@ Report run_export(const ExportFlags& flags) {
                      source.largest_error, source.rms_error);
     }
   }
-  if (!flags.probe.empty()) write("probe", flags.probe, probe_json(policy, network, choice, flags).dump());
+  if (!flags.probe.empty())
+    write("probe", flags.probe, probe_json(policy, network, choice, bounds, flags).dump());
   return {json, text};
 }
 
@@ -162,8 +195,18 @@ void add_export(CLI::App& app, Run& run) {
       command->add_option("--name", flags->name, "begins the names in the C file; default: the task")
           ->needs(c);
   command->add_flag("--int8", flags->int8, "weights of the C file in 8 bits")->needs(c);
-  command->add_option("--onnx", flags->onnx, "ONNX file to write: normaliser, network and clip in one graph");
-  command->add_option("--safetensors", flags->safetensors, "safetensors file to write");
+  CLI::Option* onnx = command->add_option("--onnx", flags->onnx,
+                                          "ONNX file to write: normaliser, network and clip in one graph");
+  CLI::Option* safetensors =
+      command->add_option("--safetensors", flags->safetensors, "safetensors file to write");
+  command
+      ->add_option("--shield", flags->shield,
+                   "project: the C file holds actions to the guards of the policy's task, and --probe its "
+                   "actions; off")
+      ->type_name("WORD")
+      ->needs(c)
+      ->excludes(onnx)
+      ->excludes(safetensors);
   command->add_option(
       "--probe", flags->probe,
       "JSON file to write: random observations and this policy's mean actions, to check others by");

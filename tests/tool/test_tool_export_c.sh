@@ -13,9 +13,11 @@ policy() {
   name=$1
   shift
   "$tool" train --envs 4 --steps 512 --set max_steps=20 --set horizon=8 "$@" --out "$name" > out 2> err || { cat err; exit 1; }
-  "$tool" export --policy "$name/policy.rdm" --c "$name.c" --name "$name" --probe "$name.json" --probes 1000 --json > "$name.out" ||
+  # shellcheck disable=SC2086
+  "$tool" export --policy "$name/policy.rdm" --c "$name.c" --name "$name" --probe "$name.json" --probes 1000 $shield --json > "$name.out" ||
     say "$name: no export"
-  "$tool" export --policy "$name" --c "${name}_8.c" --name "${name}_8" --int8 --json > "${name}_8.out" || say "$name: no int8 export"
+  # shellcheck disable=SC2086
+  "$tool" export --policy "$name" --c "${name}_8.c" --name "${name}_8" --int8 $shield --json > "${name}_8.out" || say "$name: no int8 export"
   grep -q "\"file\":\"$name.c\",\"bytes\":$(stat -c %s "$name.c")," "$name.out" || say "$name: $(cat "$name.out")"
   # the numbers of the probe, one a line
   part() { sed "s/.*\"$1\":\\[*//; s/[]},].*//" "$name.json"; echo; }
@@ -59,7 +61,7 @@ check() {
     fi
     status "$file" 0 "$file"
     # any number that is changed is noticed, and a policy that takes what is no number
-    for table in weight_0 bias_1 ${eyes:+weight_eye_0 origin}; do
+    for table in weight_0 bias_1 ${eyes:+weight_eye_0 origin} ${shield:+low high}; do
       awk -v table="_$table[" '{ if (on) { sub(/^  -?/, "&1"); on = 0 } if (index($0, table) && /^static const/) on = 1; print }' \
         "$file" > changed.c
       cmp -s "$file" changed.c && say "$file: nothing was changed in $table"
@@ -69,6 +71,13 @@ check() {
     status changed.c 3 "$file without its fault"
     sed 's/const float a = \([a-z]*\)\[i\];/const float a = 0.9f * \1[i];/' "$file" > changed.c
     status changed.c 1 "$file with other actions"
+    if [ -n "$shield" ]; then
+      grep -q '^ \* Guards: ' "$file" || say "$file: its guards are not said"
+      for side in low high; do
+        sed "s/a [<>] [a-z0-9_]*_$side\[i\] ? [a-z0-9_]*_$side\[i\]/0 ? 0/" "$file" > changed.c
+        status changed.c 1 "$file without the guards' $side ends"
+      done
+    fi
     [ -z "$eyes" ] && continue
     sed 's/fault += points.*/;/; s/fault += best.*/;/' "$file" > changed.c
     status changed.c 3 "$file with points that are not finite"
@@ -87,7 +96,7 @@ check() {
   grep -q 'differ from' "${name}_8.c" || say "${name}_8: its error is not in it"
   checked=$((checked + 1))
 }
-eyes=
+eyes= shield=
 check tanh --set hidden=64,64 --set activation=tanh
 check elu --set hidden=128,64,32 --set activation=elu
 check relu --set hidden=30 --set activation=relu
@@ -95,6 +104,10 @@ check bare --set hidden=16,17 --set normalize_obs=false
 check state --set hidden=16,16 --set std_mode=state
 check part --set hidden=16,16 --set 'actor_obs=proprioception,object.*'
 check ball --task ball_run --set hidden=16,16
+# a cost of the commands alone, and a mean outside of two windows
+shield='--shield project'
+check held --set cost_mode=command --set window.ff2.low=35 --set window.ff3.high=25 --set hidden=16,16
+shield=
 cloud='--set encoder_points=40 --set cloud_width=24 --set cloud_height=24'
 eyes=-DEYES
 # shellcheck disable=SC2086
@@ -110,7 +123,7 @@ eyes='-DEYES -DKINDS -DCOLORS'
 # shellcheck disable=SC2086
 check tints --set encoder=8,9 --set encoder_classes=5 --set encoder_color=true --set goal_points=8 --set hidden=16 $cloud
 eyes=
-[ $checked -eq 11 ] || say "$checked policies"
+[ $checked -eq 12 ] || say "$checked policies"
 
 # several policies in one program, by one file or by several
 printf '#include "%s"\n#include "%s"\n#include "%s"\n#include "%s"\nint main(void) { return 0; }\n' tanh.c elu_8.c elu_8.c kinds.c > both.c
@@ -130,5 +143,14 @@ for bad in 1a a-b 'a b' '' _a a__b 'a;b' "$(printf '%064d' 0 | tr 0 a)" 'é'; do
 done
 "$tool" export --policy tanh --onnx x --int8 > out 2> err
 [ $? -eq 2 ] || say "--int8 without --c"
+# guards: of a task that declares some, in the C file alone
+for bad in 'tanh --c bad.c --shield project' 'trained:reorient --c bad.c --shield project' 'held --c bad.c --shield predict' 'held --c bad.c --shield project:zero=false' 'held --c bad.c --shield projekt' 'held --shield project --probe x' \
+  'held --c bad.c --shield project --onnx x' 'held --c bad.c --shield project --safetensors x'; do
+  # shellcheck disable=SC2086
+  "$tool" export --policy $bad > out 2> err
+  [ $? -eq 2 ] && [ "$(wc -l < err)" -eq 1 ] || say "export --policy $bad: $(cat err)"
+done
+grep -q 'action\[[0-9]*\]  -0.5 .. 0.5$' held.c || say "held.c: $(grep 'action\[' held.c | head -5)"
+[ "$(grep -c '^ \*   action\[' held.c)" -eq 3 ] || say "held.c: the bounds of other entries are said"
 [ ! -e bad.c ] || say "a file with a bad name was written"
 exit $failed

@@ -446,7 +446,8 @@ std::string test_main_text(const Eyes& e) {
 }
 
 std::string head_text(const Network& network, const std::vector<Layer>& layers,
-                      const std::vector<ObsField>& fields, const rdm_policy_info& info) {
+                      const std::vector<ObsField>& fields, const ActionBounds& bounds,
+                      const rdm_policy_info& info) {
   const Eyes& e = network.eyes;
   const Call call = call_of(e);
   std::string out = kHead, beside, sees;
@@ -459,6 +460,13 @@ std::string head_text(const Network& network, const std::vector<Layer>& layers,
   out = replaced(
       replaced(replaced(out, "BESIDE", beside), "CALL", replaced(call.call, "count", "NAME_num_points")),
       "SEES", sees);
+  std::string held;
+  for (size_t j = 0; j < bounds.low.size(); ++j)
+    if (bounds.low[j] > -1 || bounds.high[j] < 1)
+      held += format(" *   action[%zu]  %g .. %g\n", j, static_cast<double>(bounds.low[j]),
+                     static_cast<double>(bounds.high[j]));
+  if (!held.empty()) held = kHeld + held;
+  out = replaced(out, "HELD", held);
   const uint32_t v = rdm_version();
   std::string shape;
   for (int32_t l = 0; l < e.num_layers; ++l)
@@ -505,13 +513,20 @@ size_t stack_bytes(const Network& network, const Layers& layers, bool int8) {
 
 }  // namespace
 
+void hold_to(const ActionBounds& bounds, std::vector<float>& actions) {
+  const size_t dim = bounds.low.size();
+  for (size_t i = 0; dim > 0 && i < actions.size(); ++i)
+    actions[i] = std::clamp(actions[i], bounds.low[i % dim], bounds.high[i % dim]);
+}
+
 CSource c_source(const redman::Policy& policy, const Network& network, const std::string& name,
-                 const std::vector<ObsField>& fields, bool int8) {
+                 const std::vector<ObsField>& fields, const ActionBounds& bounds, bool int8) {
   const Layers layers = layers_of(network, int8);
   const Eyes& eyes = network.eyes;
   const NamedTensor* clip = network.find("normalizer.clip");
   const TestRows tests = test_rows(network);
-  const std::vector<float> expected = mean_actions(policy, tests.obs, tests.clouds);
+  std::vector<float> expected = mean_actions(policy, tests.obs, tests.clouds);
+  hold_to(bounds, expected);
   CSource out;
   double tolerance = kFloatTolerance;
   std::string weights = "32-bit floats";
@@ -522,6 +537,7 @@ CSource c_source(const redman::Policy& policy, const Network& network, const std
     std::vector<float> obs = probe_observations(network, rows, 0);
     Clouds clouds = probe_clouds(network, rows, 0);
     std::vector<float> exact = mean_actions(policy, obs, clouds);
+    hold_to(bounds, exact);
     const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
     append(obs, tests.obs);
     append(clouds.points, tests.clouds.points);
@@ -531,7 +547,8 @@ CSource c_source(const redman::Policy& policy, const Network& network, const std
     const auto in = static_cast<size_t>(network.obs_dim), dim = static_cast<size_t>(network.action_dim);
     double squares = 0;
     for (size_t row = 0; row < obs.size() / in; ++row) {
-      const std::vector<float> action = run_layers(network, layers, obs.data() + row * in, clouds, row);
+      std::vector<float> action = run_layers(network, layers, obs.data() + row * in, clouds, row);
+      hold_to(bounds, action);
       for (size_t j = 0; j < dim; ++j) {
         const auto gap = static_cast<double>(std::abs(action[j] - exact[row * dim + j]));
         out.largest_error = std::max(out.largest_error, gap);
@@ -554,6 +571,8 @@ CSource c_source(const redman::Policy& policy, const Network& network, const std
     tables.add("shift", shift);
     tables.add("scale", scale);
   }
+  const bool held = !bounds.low.empty();
+  if (held) tables.add("low", bounds.low), tables.add("high", bounds.high);
   if (eyes.points) tables.add("origin", std::vector<float>(eyes.origin, eyes.origin + 3));
   for (const auto* part : {&layers.actor, &layers.eyes})
     for (const Layer& layer : *part) {
@@ -565,7 +584,7 @@ CSource c_source(const redman::Policy& policy, const Network& network, const std
     }
   const rdm_policy_info& info = policy.info();
   std::string& text = out.text;
-  text = head_text(network, layers.actor, fields, info);
+  text = head_text(network, layers.actor, fields, bounds, info);
   text += replaced(replaced(kDeclarations, "DECLARATION", call_of(eyes).declaration), "EYE_SIZES",
                    !eyes.points ? ""
                                 : format(",\n       NAME_num_points = %d, NAME_num_point_classes = %d",
@@ -595,6 +614,8 @@ CSource c_source(const redman::Policy& policy, const Network& network, const std
            {"ROWS", std::to_string(kTestRows)},
            {"TOLERANCE", literal(tolerance)},
            {"CHECKSUM", format("0x%08xu", tables.checksum())},
+           {"LOWEST", held ? "NAME_low[i]" : "-1.0f"},
+           {"HIGHEST", held ? "NAME_high[i]" : "1.0f"},
            {"NAME", name}})
     text = replaced(std::move(text), word, by);
   return out;

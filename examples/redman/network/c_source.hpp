@@ -10,6 +10,11 @@ struct ObsField {
   bool seen = true;               // by the policy
 };
 
+// What actions are held to, within [-1, 1]; both empty: nothing.
+struct ActionBounds {
+  std::vector<float> low, high;  // [action_dim]
+};
+
 struct CSource {
   std::string text;
   double largest_error = 0, rms_error = 0;  // of int8 weights: actions, against the policy's own
@@ -17,7 +22,9 @@ struct CSource {
 
 // `name` begins every symbol. `fields` say what the observation is made of; may be empty.
 CSource c_source(const redman::Policy& policy, const Network& network, const std::string& name,
-                 const std::vector<ObsField>& fields, bool int8);
+                 const std::vector<ObsField>& fields, const ActionBounds& bounds, bool int8);
+// Clips rows of actions.
+void hold_to(const ActionBounds& bounds, std::vector<float>& actions);
 
 // "hand_over_act" and its like can be made of it. Usage if not.
 void check_c_name(const std::string& name);

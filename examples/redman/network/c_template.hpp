@@ -13,13 +13,19 @@ inline constexpr const char* kHead =
  * One decision, to be held for RATE: the mean action, clipped to [-1, 1].
  * Every action is NaN when an observation is not finite, or the network overflows on it: test one for
  * action == action before it moves anything.
-SEES *
+HELDSEES *
  * With REDMAN_POLICY_HEADER defined this file declares only. With REDMAN_POLICY_TEST it is a program: status 0
  * when the actions are the policy's, 1 when not, 2 when a number is not what was exported, 3 when an
  * observation that is not finite is taken.
  *
  * Network: SHAPE. Weights: WEIGHTS.
  * Layout of observations and actions: LAYOUT.
+)";
+
+// Of one that is held to the guards of its task.
+inline constexpr const char* kHeld =
+    R"( *
+ * Guards: whatever the network says, these entries stay within bounds that keep a cost of the task at 0.
 )";
 
 // Of a policy with eyes.
@@ -252,7 +258,7 @@ inline constexpr const char* kTake = R"(    front[i] = obs[i];
 
 inline constexpr const char* kActTail = R"(  for (i = 0; i < NAME_action_dim; ++i) {
     const float a = LAST[i];
-    action[i] = a < -1.0f ? -1.0f : a > 1.0f ? 1.0f : a;
+    action[i] = a < LOWEST ? LOWEST : a > HIGHEST ? HIGHEST : a;
     fault += action[i] - action[i];
   }
   for (i = 0; i < NAME_action_dim; ++i) action[i] += fault;
