@@ -174,6 +174,44 @@ class States(unittest.TestCase):
             play(other.pool, other, 5)
             self.assertEqual((other.pool.hash(), other.state()), (pool.hash(), shield.state()))
 
+    def test_guards_are_kept_without_copies(self):
+        options = {"cost_mode": "command"}
+        free, pool = worlds(8, options, "hand_over_safe_finger"), worlds(8, options, "hand_over_safe_finger")
+        self.assertEqual(worlds(1, {}, "hand_over_safe_finger").guards, [])
+        guards = [guard for guard in pool.guards if guard.column == 0]
+        self.assertEqual((len(guards), {guard.cost for guard in guards}), (6, {"cost"}))
+        self.assertEqual([guard.normal[guard.entry] for guard in guards], [1, -1] * 3)
+        shield = redman.Shield(pool, options={"predict": False})
+        play(free, None, 30)
+        play(pool, shield, 30)
+        self.assertGreater(free.stats.violations, 0)
+        self.assertEqual((pool.stats.violations, shield.stats.copied), (0, 0))
+        self.assertGreater(shield.interventions, 0)
+        self.assertEqual(shield.interventions, shield.stats.projected)
+        row = shield.row(int(np.argmax(shield.intervened)))
+        self.assertEqual((row.kind, row.cost), (redman.ShieldKind.PROJECTED, "cost"))
+
+    def test_guards_of_ones_own_are_each_worlds(self):
+        pool = worlds(3, {}, "hand_over_wall")
+        shield = redman.Shield(pool, options={"predict": False})
+        normal = np.linspace(-1, 1, pool.action_dim)
+        self.assertEqual((shield.add_guard(normal, 0.5), shield.add_guard(-normal, 9)), (0, 1))
+        shield.set_guard(2, 0, normal[::-1], 0.25)
+        proposed = np.tile(np.linspace(-0.9, 0.9, pool.action_dim), (3, 1)).astype(np.float32)
+        out = shield.act(proposed)
+        self.assertTrue(same(out[1], redman.project([normal], [0.5], proposed[1])))
+        self.assertTrue(same(out[2], proposed[2]))
+        self.assertEqual((shield.row(1).kind, shield.row(1).cost), (redman.ShieldKind.PROJECTED, None))
+        other = pickle.loads(pickle.dumps(shield))
+        self.assertEqual(other.state(), shield.state())
+        self.assertTrue(same(other.act(proposed), out))
+        with self.assertRaisesRegex(redman.ArgumentError, "no action of world 1"):
+            shield.set_guard(1, 0, normal, -100)
+        with self.assertRaisesRegex(redman.ArgumentError, "normal: shape"):
+            shield.add_guard([1, 2], 0)
+        with self.assertRaisesRegex(redman.ArgumentError, "row 0: its normal is 0"):
+            redman.project([[0, 0]], [1], [0, 0])
+
     def test_threads_change_nothing(self):
         ends = []
         for threads in (0, 2):

@@ -31,8 +31,8 @@ from ._names import moved
 from ._options import Options
 from ._play import Evaluation, Player, evaluate
 from ._policy import Origin, Policy
-from ._pool import Pool, Sensors, memory
-from ._shield import Shield, ShieldRow
+from ._pool import Guard, Pool, Sensors, memory
+from ._shield import Shield, ShieldRow, project
 from ._train import Callback, Run, train
 
 __version__ = version = build().version
@@ -40,11 +40,11 @@ __version__ = version = build().version
 __all__ = [
     "Actor", "Agent", "Algo", "AllocationError", "ArgumentError", "Autoreset", "BaselineKind", "Build", "Callback", "Camera",
     "CancelledError", "Cost", "CostLimits", "Curve", "Curves", "Epoch", "Error", "Evaluation", "Field", "FileError",
-    "FormatError", "HoldWarning", "InternalError", "Joint", "JointKind", "Map", "MapInfo", "MissingFileError",
+    "FormatError", "Guard", "HoldWarning", "InternalError", "Joint", "JointKind", "Map", "MapInfo", "MissingFileError",
     "NotFoundError", "Object", "Option", "OptionKind", "OptionLevel", "Options", "Origin", "PhysicsError", "Player", "Policy", "PolicyInfo",
     "Pool", "PoolStats", "RangeError", "RayHit", "ResultCode", "Robot", "Run", "Sensors", "Shape", "ShapeKind", "Shield", "ShieldKind", "ShieldRow", "ShieldStats", "Spec", "StateError", "Status", "Task",
     "UnsupportedError", "UsageError", "VersionError", "__version__", "algo", "algos", "build", "c_function", "curve",
-    "evaluate", "memory", "objects", "robots", "sample_furthest", "shield_options", "stats", "task", "tasks", "train", "version",
+    "evaluate", "memory", "objects", "project", "robots", "sample_furthest", "shield_options", "stats", "task", "tasks", "train", "version",
 ]
 
 moved(globals(), __all__)  # what is public is of this module, in texts and in pickles

@@ -67,6 +67,20 @@ def memory(task: Union[str, _discovery.Task], num_envs: int = 1, options: Option
     return ours.value, engines.value
 
 
+class Guard(_abi.Guard):
+    """A half space of actions, normal . action <= bound: the cost of its column, `cost` by name, is 0 in each step while all
+    guards of that column are kept. entry: the only one that is not 0 in normal, None where there are several."""
+
+    entry: Optional[int]  # type: ignore[assignment]
+    cost: str
+    normal: tuple[float, ...]  # [action_dim]
+
+    def __init__(self, struct: _abi.rdm_guard, normal: FloatArray, costs: Sequence[str]) -> None:
+        super().__init__(struct)
+        self.__dict__.update(entry=None if struct.entry < 0 else struct.entry, cost=costs[struct.column],
+                             normal=tuple(map(float, normal)))
+
+
 class Sensors:
     """What worlds see (option modality): arrays of the library's memory, None where a modality is off."""
 
@@ -525,6 +539,20 @@ class Pool(Hinted):
     def costs(self) -> dict[str, _discovery.Cost]:
         """What each column of cost means."""
         return dict(self.task.costs)
+
+    @property
+    def guards(self) -> list[Guard]:
+        """Half spaces within which a cost is 0: of tasks whose cost is of the action alone, as throws with
+        cost_mode=command. Experimental."""
+        out: list[Guard] = []
+        struct, normal = sized(_abi.rdm_guard), np.empty(self.action_dim, np.float32)
+        with self._lock:
+            while True:
+                code = lib.rdm_pool_guard_at(self._open(), len(out), byref(struct), normal.ctypes.data)
+                if code == _abi.ResultCode.RANGE:
+                    return out
+                check(code)
+                out.append(Guard(struct, normal, self.cost_names))
 
     @property
     def cost_names(self) -> tuple[str, ...]:

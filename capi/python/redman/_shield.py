@@ -1,4 +1,5 @@
-"""Shield: under it no cost exceeds its budget, whatever is proposed. Experimental, as redman/shield.h is."""
+"""Shield: under it no cost exceeds its budget, whatever is proposed; project: the nearest action within half spaces.
+Experimental, as redman/shield.h is."""
 from __future__ import annotations
 
 import ctypes
@@ -35,7 +36,8 @@ class ShieldRow(_abi.ShieldRow):
     """What a shield did in a world's last decision, and why; kind is a redman.ShieldKind."""
 
     kind: ShieldKind
-    # Of what was refused: the cost that it would have met, and its name; None: nothing was, or the copy diverged.
+    # Of what was refused: the cost that it would have met, and its name; None: nothing was, or the copy diverged. Of what was
+    # projected: of the guard that it broke most; None: of one that was added.
     column: Optional[int]  # type: ignore[assignment]
     cost: Optional[str]
     # That the plan goes on by, of Shield.backups; None: no other way was looked for.
@@ -50,7 +52,8 @@ class ShieldRow(_abi.ShieldRow):
 
 class Shield(Hinted):
     """Lets an action through only where an exact copy of the world, going on by a known plan, keeps within the budget of every
-    cost to the episode's end; else another action takes its place.
+    cost to the episode's end; else another action takes its place. Before that it goes to the nearest action that keeps the
+    guards, pool.guards of costs whose budget is 0 and those of add_guard; with options={"predict": False} that is all.
 
         pool = redman.Pool("hand_over_safe_joint", 16, options={"action_repeat": 4})    # a step is a decision
         pool.reset()
@@ -104,6 +107,7 @@ class Shield(Hinted):
         self.steps: int = own["steps"] or held  # of the pool that a decision lasts
         self._config: dict[str, Any] = {**own, "steps": self.steps}
         self._policies = [] if policy is None else [policy]
+        self._guards: list[tuple[Array, float]] = []
         self._lock = threading.RLock()
         self._rows = _abi.FUNCTIONS["rdm_shield_act"].rows
         self._lengths = {"num_envs": pool.num_envs, "action_dim": pool.action_dim}
@@ -114,6 +118,25 @@ class Shield(Hinted):
         with self._lock, on_task(self.pool):
             check(lib.rdm_shield_add_policy(self._handle.value, policy._open()))
             self._policies.append(policy)
+
+    def add_guard(self, normal: Any, bound: float) -> int:
+        """One guard more, of all worlds: normal [action_dim] . action <= bound. Its number for set_guard. Plans are
+        forgotten."""
+        row = self._normal("rdm_shield_add_guard", normal)
+        with self._lock:
+            check(lib.rdm_shield_add_guard(self._handle.value, row.ctypes.data, bound))
+            self._guards.append((row.copy(), float(bound)))
+            return len(self._guards) - 1
+
+    def set_guard(self, env: int, i: int, normal: Any, bound: float) -> None:
+        """Guard i of those that were added, of one world from now on, as a model says it of its state. Its plan is forgotten
+        where something differs."""
+        row = self._normal("rdm_shield_set_guard", normal)
+        with self._lock:
+            check(lib.rdm_shield_set_guard(self._handle.value, int32(env, "env"), int32(i, "i"), row.ctypes.data, bound))
+
+    def _normal(self, function: str, normal: Any) -> Array:
+        return given(normal, _abi.FUNCTIONS[function].rows["normal"], self._lengths, "normal")
 
     def act(self, proposed: Any = None, mask: Any = None) -> FloatArray:
         """What the worlds are to do [num_envs][action_dim] where `proposed` is what each would do; for a decision, whose action
@@ -159,7 +182,7 @@ class Shield(Hinted):
 
     @property
     def intervened(self) -> npt.NDArray[np.bool_]:
-        """[num_envs] where the last decision was not let through."""
+        """[num_envs] where the last decision was not let through as it was."""
         refused: npt.NDArray[np.bool_] = self.kinds != ShieldKind.OWN
         return refused
 
@@ -180,9 +203,9 @@ class Shield(Hinted):
 
     @property
     def interventions(self) -> int:
-        """Decisions so far that were not let through."""
+        """Decisions so far that were not let through as they were."""
         counts = self.stats
-        return counts.changed + counts.planned + counts.unproven
+        return counts.changed + counts.planned + counts.projected + counts.unproven
 
     @property
     def options(self) -> dict[str, Value]:
@@ -208,7 +231,7 @@ class Shield(Hinted):
             check(lib.rdm_shield_reset(self._handle.value, address(self._mask(mask))))
 
     def state(self) -> bytes:
-        """Plans, noise and counts."""
+        """Plans, noise, counts and what set_guard said."""
         with self._lock:
             return bytes_of(lib.rdm_shield_write_state, self._handle.value)
 
@@ -225,17 +248,32 @@ class Shield(Hinted):
         return self._handle.value
 
     def __getstate__(self) -> dict[str, Any]:
-        return {"pool": self.pool, "config": self._config, "policies": self._policies, "state": self.state()}
+        return {"pool": self.pool, "config": self._config, "policies": self._policies, "guards": self._guards,
+                "state": self.state()}
 
     def __setstate__(self, saved: Mapping[str, Any]) -> None:
         policies = saved["policies"]
         self._make(saved["pool"], saved["config"], policies[0] if policies else None)
         for policy in policies[1:]:
             self.add(policy)
+        for normal, bound in saved["guards"]:
+            self.add_guard(normal, bound)
         self.set_state(saved["state"])
 
     def __repr__(self) -> str:
         return f"<Shield of {self.pool.num_envs} of {self.pool.task.name}: {len(self.backups)} backups>"
+
+
+def project(normals: Any, bounds: Any, action: Any) -> FloatArray:
+    """The action in [-1, 1], of all with normals [count][dim] . action <= bounds [count], that is nearest to action [dim]."""
+    rows = _abi.FUNCTIONS["rdm_project"].rows
+    count, dim = np.size(bounds), np.size(action)
+    lengths = {"count": count, "dim": dim}
+    arrays = [given(value, rows[name], lengths, name)
+              for name, value in (("normals", normals), ("bounds", bounds), ("action", action))]
+    out = np.empty(dim, np.float32)
+    check(lib.rdm_project(arrays[0].ctypes.data, arrays[1].ctypes.data, count, dim, arrays[2].ctypes.data, out.ctypes.data))
+    return out
 
 
 def _backup(policy: Backup, pool: Pool) -> Policy:

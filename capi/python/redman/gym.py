@@ -12,8 +12,8 @@ is named by its seed alone: world i of reset(seed=s) has the episode of an Env w
 
 shield=True puts every action under a redman.Shield, which lets it through only where no cost can come of it. Infos then have
 "applied", the action that ran, as the learner would have said it; "intervened", whether it was another; and "shield", what
-was done: "own", "changed", "plan" or "unproven" (redman.ShieldKind), "" in a reset. Where the shield tries noisy actions
-(shield={"noise": 0} does not), its own noise goes on from episode to episode.
+was done: "own", "changed", "plan", "unproven" or "projected" (redman.ShieldKind), "" in a reset. Where the shield tries
+noisy actions (shield={"noise": 0} does not), its own noise goes on from episode to episode.
 
 With option modality (rgb, depth, segmentation, points, voxels joined by +) an observation is a dict: "state", the row, and
 an entry for each of them; pictures of one camera are [height][width]..., of several [cameras][height][width]...
