@@ -67,7 +67,7 @@ rdm_result rdm_project(const float* normals, const float* bounds, size_t count, 
     const auto n = static_cast<int32_t>(count), width = static_cast<int32_t>(dim);
     HalfSpace rows[kMostGuards];
     for (size_t i = 0; i < count; ++i) {
-      char name[24];
+      char name[40];
       std::snprintf(name, sizeof name, "normals: row %zu", i);
       rows[i] = {normals + i * dim, bounds[i]};
       check_half_space(rows[i], width, name);
