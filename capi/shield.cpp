@@ -5,6 +5,7 @@
 #if RDM_WITH_SIM
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "capi/shield.hpp"
 
@@ -205,6 +206,25 @@ rdm_result rdm_shield_get_row(const rdm_shield* s, const rdm_pool* pool, int32_t
     out.backup = r.backup;
     s->shield->plan(*pool->pool, env, &out.planned);
     write_struct(io, out, sizeof out, "io");
+  });
+}
+
+rdm_result rdm_shield_get_kinds(const rdm_shield* s, int32_t* kind) {
+  return call_on(s, [&] {
+    need(kind, "kind");
+    for (int32_t env = 0; env < s->shield->num_envs(); ++env)
+      kind[env] = static_cast<int32_t>(s->shield->row(env).kind);
+  });
+}
+
+rdm_result rdm_shield_set_plan(rdm_shield* s, const rdm_pool* pool, int32_t env, const float* plan,
+                               size_t decisions) {
+  return call_on(s, [&] {
+    const Use use(pool);
+    need(plan, "plan");
+    need_index(env, s->shield->num_envs(), "env");
+    const size_t most = std::numeric_limits<int32_t>::max();
+    s->shield->set_plan(*pool->pool, env, plan, static_cast<int32_t>(std::min(decisions, most)));
   });
 }
 

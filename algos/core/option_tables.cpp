@@ -142,10 +142,11 @@ bool any_algo_knows(const char* key) {
   return false;
 }
 
-// "focops:passes" names an algorithm and is for that one alone. False: for another.
+// "focops:passes" names an algorithm and is for that one alone. False: for another, or for shields.
 bool take_owner(const AlgoInfo& algo, OptionInput& in) {
   const char* colon = std::strchr(in.key, ':');
   if (!colon) return true;
+  if (shield_key(in.key)) return false;
   char name[64];
   std::snprintf(name, sizeof name, "%.*s", static_cast<int>(colon - in.key), in.key);
   const AlgoInfo& owner = algo_at(algo_find(name));

@@ -57,7 +57,8 @@ RDM_API rdm_result rdm_task_option_at(int32_t task, int32_t i,
                                       rdm_option_spec *io); /* i < num_options */
 RDM_API rdm_result rdm_task_camera_at(int32_t task, int32_t i,
                                       rdm_camera_info *io); /* i < num_cameras */
-/* The task's own defaults of agent options, to be given as rdm_agent_config.defaults. */
+/* The task's own defaults of agent options, to be given as rdm_agent_config.defaults; "shield:key"
+ * is one of shields, which have it from their pool. */
 RDM_API rdm_result rdm_task_default_at(int32_t task, int32_t i,
                                        rdm_option *out); /* i < num_defaults */
 

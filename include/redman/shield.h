@@ -172,6 +172,15 @@ RDM_API rdm_result rdm_shield_act(rdm_shield *shield, const rdm_pool *pool, cons
 /* What was done in the last decision of world env. */
 RDM_API rdm_result rdm_shield_get_row(const rdm_shield *shield, const rdm_pool *pool, int32_t env,
                                       rdm_shield_row *io);
+/* The RDM_SHIELD_... of each world's last decision to kind [num_envs]. */
+RDM_API rdm_result rdm_shield_get_kinds(const rdm_shield *shield, int32_t *kind);
+/* plan [decisions][action_dim], of a demonstration or a planner, becomes the plan of world env once
+ * it is projected and clean in a copy; where it ends before the episode, a backup goes on. Where
+ * nothing new is clean the world then follows it. STATE: a budget is exceeded, which the text names
+ * with the control steps until then, or no episode runs; the plan before stays. UNSUPPORTED with
+ * copies=K. RANGE: more decisions than an episode has. */
+RDM_API rdm_result rdm_shield_set_plan(rdm_shield *shield, const rdm_pool *pool, int32_t env,
+                                       const float *plan, size_t decisions);
 /* The plan of world env as it is to plan [capacity] numbers, a row of action_dim for each decision
  * from now to the end; *size is how many numbers there are, 0: it has none. */
 RDM_API rdm_result rdm_shield_get_plan(const rdm_shield *shield, const rdm_pool *pool, int32_t env,

@@ -75,6 +75,11 @@ class Shield {
     check(rdm_shield_get_row(get(), pool.get(), env, &row));
     return row;
   }
+  // The rdm_shield_kind of each world's last decision, [num_envs].
+  void kinds(int32_t* kind) const { check(rdm_shield_get_kinds(get(), kind)); }
+  void set_plan(const Pool& pool, int32_t env, const float* plan, size_t decisions) {
+    check(rdm_shield_set_plan(get(), pool.get(), env, plan, decisions));
+  }
   // [decisions][action_dim], empty where there is none.
   std::vector<float> plan(const Pool& pool, int32_t env) const {
     size_t count = 0;

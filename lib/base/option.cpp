@@ -349,6 +349,11 @@ Vector<char> Options::lines() const {
   return out;
 }
 
+const char* shield_key(const char* key) {
+  constexpr char kOwner[] = "shield:";
+  return std::strncmp(key, kOwner, sizeof kOwner - 1) == 0 ? key + sizeof kOwner - 1 : nullptr;
+}
+
 void Options::set_default(const char* key, double number) {
   const int32_t i = find(key);
   if (i < 0) fail(Code::kInternal, "option %s is not declared", key);

@@ -108,6 +108,9 @@ struct OptionInput {
   double number;
 };
 
+// Of "shield:noise", a default that a task has for shields, the key behind it; null: a default for agents.
+const char* shield_key(const char* key);
+
 // The values of one or more tables, after the host's list was laid over the defaults.
 class Options {
  public:

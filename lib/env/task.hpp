@@ -39,6 +39,7 @@ struct CameraSpec {
   int32_t mount = 0;
   double cx = 0, cy = 0;
 };
+// What a task recommends: an option of agents, NAME:key of the algorithm NAME, or shield:key of shields.
 struct LearnerDefault {
   const char* key;
   const char* value;

@@ -68,6 +68,13 @@ const OptionSpec* shield_options(int32_t* count) {
 
 void Shield::read_options(const ShieldConfig& c) {
   options_.add_table(kRows.specs, static_cast<int32_t>(kRows.size()));
+  const TaskInfo& task = task_at(c.pool->task_index());
+  for (int32_t i = 0; i < task.num_defaults; ++i)
+    if (const char* key = shield_key(task.defaults[i].key)) {
+      if (!options_.knows(key))
+        fail(Code::kNotFound, "task %s: shields have no option \"%s\"", task.name, key);
+      options_.set_default(key, task.defaults[i].value);
+    }
   options_.set_all(c.options, c.num_options, c.settings, "shield");
   set_ = kRows.read(options_);
   if (set_.copies == 0) return;
@@ -377,6 +384,13 @@ void Shield::inquire(const Pool& pool, const float* proposed, bool unneeded) {
   for (int32_t x = 0; x < num_asked_; ++x) adopt(pool, inquiries_[x]);
 }
 
+const double* Shield::bound_of(const Pool& pool, int32_t env) {
+  double* bound = bound_ + sz(env) * sz(costs_);
+  for (int32_t k = 0; k < costs_; ++k)
+    bound[k] = budget_[k] < 0 ? -1 : std::max(budget_[k], pool.spent(env, k));
+  return bound;
+}
+
 void Shield::run_first(const Pool& pool, const float* proposed) {
   first_.stop_all();
   std::fill_n(backup_, first_.count(), order_[0]);
@@ -386,9 +400,7 @@ void Shield::run_first(const Pool& pool, const float* proposed) {
     q = {};
     q.env = env;
     q.fail = q.winner = q.column = -1;
-    double* bound = bound_ + sz(env) * sz(costs_);
-    for (int32_t k = 0; k < costs_; ++k)
-      bound[k] = budget_[k] < 0 ? -1 : std::max(budget_[k], pool.spent(env, k));
+    const double* bound = bound_of(pool, env);
     for (int32_t i = first_of(env); i < first_of(env + 1); ++i) {
       first_.start(i, pool, env, bound);
       if (set_.copies > 0) first_.redraw(i, drawn_[env]);
@@ -637,6 +649,60 @@ void Shield::adopt(const Pool& pool, const Inquiry& q) {
   std::copy_n(way, row_of(first), to);
   if (!clean) std::copy_n(tail_ + plan_of(q.env), row_of(q.tail), to + row_of(first));
   if (p.refused >= 0) std::copy_n(foreseen_own(q.env, p.refused), dim_, refused_ + row_of(q.env));
+}
+
+// ---- plans of a host
+
+void Shield::set_plan(const Pool& pool, int32_t env, const float* actions, int32_t count) {
+  const FpMode fp;
+  check_pool(pool);
+  if (!set_.predict)
+    fail(Code::kArgument, "plan: with predict=false nothing is tried, so there are no plans");
+  if (set_.copies > 0)
+    fail(Code::kUnsupported, "plan: with copies=%d no plan of actions holds for certain", set_.copies);
+  if (!pool.running(env)) fail(Code::kState, "plan: no episode runs in world %d; reset it first", env);
+  if (count < 1 || count > length_)
+    fail(Code::kRange, "plan: %d decisions are outside [1, %d]", count, length_);
+  for (size_t j = 0; j < row_of(count); ++j)
+    if (!std::isfinite(actions[j])) fail(Code::kArgument, "plan: entry %zu is not finite", j);
+  order_backups(nullptr);
+  const double* bound = bound_of(pool, env);
+  const int32_t i = first_of(env), end = set_.look > 0 ? std::min(count + set_.look, length_) : length_;
+  // It is tried with each backup behind its end, until one is clean.
+  for (int32_t b = 0;; ++b) {
+    first_.stop_all();
+    first_.start(i, pool, env, bound);
+    int32_t d = 0;
+    for (; first_.going(i) && d < end && (d < count || b < num_order_); ++d) {
+      if (d < count) {
+        guards_.project(env, actions + row_of(d), first_.action(i));
+      } else {
+        backup_[i] = order_[b];
+        back_up(&first_, backup_);
+        keep_guards(&first_, worlds_);
+      }
+      std::copy_n(first_.action(i), dim_, way_ + plan_of(env) + row_of(d));
+      counts_.copied += first_.step(steps_, true);
+    }
+    const auto fate = first_.fate(i);
+    if (fate == CopiesTried::Fate::kOver || (fate == CopiesTried::Fate::kGoing && d == end)) {
+      Plan& p = plans_[env];
+      p = {};
+      p.course = pool.course(env);
+      p.begin = pool.episode_step(env);
+      p.length = d;
+      p.refused = p.backup = p.column = -1;
+      std::copy_n(way_ + plan_of(env), row_of(d), plan_ + plan_of(env));
+      return;
+    }
+    if (fate != CopiesTried::Fate::kGoing && d > count && b + 1 < num_order_) continue;
+    if (fate == CopiesTried::Fate::kGoing)
+      fail(Code::kState, "world %d: the plan ends before the episode, and there is no backup", env);
+    const int32_t ahead = first_.ended_in(i) - pool.episode_step(env), column = first_.column(i);
+    if (column < 0) fail(Code::kState, "world %d: by the plan it diverges in %d control steps", env, ahead);
+    fail(Code::kState, "world %d: by the plan cost column %d, %s, exceeds its budget in %d control steps",
+         env, column, Quoted(task_at(pool.task_index()).costs[column].name).text, ahead);
+  }
 }
 
 void Shield::back_up(CopiesTried* copies, const int32_t* backup) {

@@ -117,6 +117,9 @@ class Shield {
   // was proposed. No heap use.
   void act(const Pool& pool, const uint8_t* mask, const float* proposed, Foresight* foresight, float* action,
            bool unneeded = false);
+  // Actions [count][action_dim] become the plan of world env where they, and then a backup, are clean in a copy; else
+  // Error(kState) says what would come, and its plan stays. No heap use.
+  void set_plan(const Pool& pool, int32_t env, const float* actions, int32_t count);
   void forget(const uint8_t* mask);  // plans of worlds whose mask is not 0 (null: all)
   void skip(int32_t env);            // a world without an episode: its last decision is its own
   void forget_blocks();              // only what was foreseen: its policy has changed
@@ -203,6 +206,7 @@ class Shield {
   void count(const ShieldRow& row);
   void order_backups(Foresight* foresight);
   void inquire(const Pool& pool, const float* proposed, bool unneeded);
+  const double* bound_of(const Pool& pool, int32_t env);  // what its episode's costs may come to, [costs]
   void run_first(const Pool& pool, const float* proposed);
   void foresee(int32_t d);
   // Of the copies of its first way that went into decision d, which the proposer made or the backup.

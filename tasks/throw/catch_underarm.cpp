@@ -27,7 +27,8 @@ constexpr auto catch_learner(const char* cost_limit) {
                                                                                   {"ppo_lag:horizon", "32"},
                                                                                   {"std_min", "0.1"},
                                                                                   {"kl_target_end", "0"},
-                                                                                  {"lr_min", "1e-5"}});
+                                                                                  {"lr_min", "1e-5"},
+                                                                                  {"shield_learn", "end"}});
 }
 constexpr auto kFingerLearner = catch_learner("40"), kJointLearner = catch_learner("30");
 

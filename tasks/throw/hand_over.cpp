@@ -16,7 +16,10 @@ const SafeThrowConfig kConfig = {
     &flat_throw_mean,
     {}};
 
-constexpr auto kFingerLearner = throw_learner("40"), kJointLearner = throw_learner("30");
+// A shield cushions a throw: who learns on through refused actions leans on it, so that they end the episode.
+constexpr LearnerDefault kShield[] = {{"shield_learn", "end"}};
+constexpr auto kFingerLearner = join_defaults(throw_learner("40"), kShield);
+constexpr auto kJointLearner = join_defaults(throw_learner("30"), kShield);
 
 }  // namespace
 

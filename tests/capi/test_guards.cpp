@@ -224,6 +224,25 @@ TEST(Guards, HoldBesidePrediction) {
   EXPECT_EQ(size, 0u);
 }
 
+// Copies that draw for themselves keep them too.
+TEST(Guards, HoldInCopiesOfWorldsThatAreNotKnown) {
+  const Pool pool = pool_of("hand_over_safe_joint", "cost_mode=angle\naction_repeat=4\nlevel=2", 4);
+  const Shield shield = shield_of(pool, "copies=3\nunproven=least");
+  std::vector<float> normal(width_of(pool), 0.0f);
+  normal[5] = 1, normal[6] = -2;
+  ASSERT_EQ(rdm_shield_add_guard(shield.get(), normal.data(), -0.5f), RDM_OK);
+  const rdm_buffers b = buffers_of(pool.get());
+  for (int i = 0; i < 10; ++i) {
+    play(pool, shield, 1, 0, 4);
+    for (size_t e = 0; e < 4; ++e) {
+      const float* a = b.action + e * normal.size();
+      EXPECT_LE(static_cast<double>(a[5] - 2 * a[6]), -0.5 + 1e-6);
+    }
+  }
+  EXPECT_GT(stats_of(shield).projected, 0);
+  EXPECT_GT(stats_of(shield).copied, 0);
+}
+
 TEST(Guards, TakeNothingFromTheHeap) {
   if (!kHeapIsCounted) GTEST_SKIP() << "the sanitizer counts";
   const Pool pool = pool_of("hand_over_safe_finger", "cost_mode=command");

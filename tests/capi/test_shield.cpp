@@ -1,6 +1,7 @@
 // rdm_shield_*: under a shield no cost exceeds its budget, whatever is proposed and while an agent learns; a shield that
 // has nothing to do changes no byte; the same bytes for any threads and after a saved state; each refusal.
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <string>
@@ -354,6 +355,99 @@ TEST(ShieldedLearning, ChangesNoByteWhereThereIsNothingToDo) {
 }
 
 // ---- refusals
+
+// Plans that a policy's shield has made are those of one that knows nothing but action 0, world by world.
+TEST(Shields, GoOnByPlansOfAHost) {
+  const Policy policy = shipped("hand_over_wall");
+  const Pool pool = pool_of("hand_over_wall", "action_repeat=2", 8);
+  rdm_shield_config c = shield_config(pool, "hold=false");
+  c.policy = policy.get();
+  const Shield teacher = shield_of(c), student = shield_of(pool, "hold=false\ntries=2\nrounds=1");
+  const rdm_buffers b = buffers_of(pool.get());
+  const auto dim = static_cast<size_t>(spec_of(pool.get()).action_dim);
+  std::vector<float> out(8 * dim), plan(200 * dim);
+  std::vector<unsigned char> scratch(rdm_policy_scratch(policy.get(), 8));
+  ASSERT_EQ(rdm_policy_act(policy.get(), b.obs, 8, nullptr, b.action, scratch.data(), scratch.size()),
+            RDM_OK);
+  ASSERT_EQ(rdm_shield_act(teacher.get(), pool.get(), nullptr, b.action, out.data()), RDM_OK);
+  for (int32_t env = 0; env < 8; ++env) {
+    size_t size = 0, own = 0;
+    ASSERT_EQ(rdm_shield_get_plan(teacher.get(), pool.get(), env, plan.data(), plan.size(), &size), RDM_OK);
+    ASSERT_GT(size, 0u);
+    ASSERT_EQ(rdm_shield_set_plan(student.get(), pool.get(), env, plan.data(), size / dim), RDM_OK)
+        << rdm_shield_error(student.get());
+    ASSERT_EQ(rdm_shield_get_plan(student.get(), pool.get(), env, nullptr, 0, &own), RDM_OK);
+    EXPECT_EQ(own, size);
+  }
+  // Held to the plans, the worlds go as the policy's do; what is proposed as planned is not asked about.
+  const int64_t copied = stats_of(student).copied;
+  std::vector<int32_t> kinds(8);
+  for (int t = 0; t < 36; ++t) {
+    for (size_t env = 0; env < 8; ++env) {
+      size_t size = 0;
+      ASSERT_EQ(rdm_shield_get_plan(student.get(), pool.get(), static_cast<int32_t>(env), plan.data(),
+                                    plan.size(), &size),
+                RDM_OK);
+      ASSERT_GT(size, 0u);
+      std::copy_n(plan.data(), dim, b.action + env * dim);
+    }
+    ASSERT_EQ(rdm_shield_act(student.get(), pool.get(), nullptr, b.action, b.action), RDM_OK);
+    ASSERT_EQ(rdm_shield_get_kinds(student.get(), kinds.data()), RDM_OK);
+    for (int32_t env = 0; env < 8; ++env) {
+      EXPECT_EQ(kinds[static_cast<size_t>(env)], RDM_SHIELD_OWN);
+      EXPECT_EQ(kinds[static_cast<size_t>(env)], row_of(student, pool, env).kind);
+    }
+    ASSERT_EQ(rdm_pool_step(pool.get()), RDM_OK);
+    if (b.terminated[0] || b.truncated[0]) break;
+  }
+  EXPECT_EQ(stats_of(student).copied, copied);
+  EXPECT_EQ(violations_of(pool), 0);
+}
+
+TEST(ShieldRefusals, OfPlans) {
+  const Pool pool = pool_of("hand_over_safe_joint", kHeld, 2);
+  const Shield shield = shield_of(pool), drawn = shield_of(pool, "copies=2"),
+               bare = shield_of(pool, "zero=false\nhold=false");
+  const auto dim = static_cast<size_t>(spec_of(pool.get()).action_dim);
+  std::vector<float> plan(10 * dim, 0.0f);
+  const auto refused = [&](const Shield& s, size_t decisions, rdm_result code, const char* text) {
+    EXPECT_EQ(rdm_shield_set_plan(s.get(), pool.get(), 1, plan.data(), decisions), code);
+    EXPECT_NE(std::strstr(rdm_shield_error(s.get()), text), nullptr) << rdm_shield_error(s.get());
+  };
+  ASSERT_EQ(rdm_shield_set_plan(shield.get(), pool.get(), 1, plan.data(), 10), RDM_OK);  // then action 0
+  size_t size = 0, after = 0;
+  ASSERT_EQ(rdm_shield_get_plan(shield.get(), pool.get(), 1, nullptr, 0, &size), RDM_OK);
+  EXPECT_GT(size, plan.size());
+  refused(drawn, 10, RDM_ERROR_UNSUPPORTED, "copies=2");
+  refused(bare, 10, RDM_ERROR_STATE, "ends before the episode");
+  refused(shield, 0, RDM_ERROR_RANGE, "0 decisions");
+  refused(shield, 1000, RDM_ERROR_RANGE, "1000 decisions");
+  EXPECT_EQ(rdm_shield_set_plan(shield.get(), pool.get(), 2, plan.data(), 10), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_shield_set_plan(shield.get(), pool.get(), 1, nullptr, 10), RDM_ERROR_ARGUMENT);
+  plan[3] = std::numeric_limits<float>::infinity();
+  refused(shield, 10, RDM_ERROR_ARGUMENT, "entry 3");
+  plan[3] = 0;
+  for (size_t d = 0; d < 10; ++d) plan[d * dim + 2] = 1;  // FF4 to the end of its range
+  refused(shield, 10, RDM_ERROR_STATE, "world 1: by the plan cost column 0");
+  ASSERT_EQ(rdm_shield_get_plan(shield.get(), pool.get(), 1, nullptr, 0, &after), RDM_OK);
+  EXPECT_EQ(after, size);
+}
+
+// A task recommends options of shields among its defaults.
+TEST(Shields, HaveDefaultsOfTheirTask) {
+  const auto noise = [](const char* task, const char* settings) {
+    const Pool pool = pool_of(task, "", 1);
+    const Shield shield = shield_of(pool, settings);
+    char text[2000];
+    size_t size = 0;
+    EXPECT_EQ(rdm_shield_get_settings(shield.get(), text, sizeof text, &size), RDM_OK);
+    const char* at = std::strstr(text, "noise=");
+    return at ? std::atof(at + 6) : -1;
+  };
+  EXPECT_EQ(noise("hand_over_wall", ""), 0.2);
+  EXPECT_EQ(noise("reorient", ""), 1);
+  EXPECT_EQ(noise("reorient", "noise=0.5"), 0.5);
+}
 
 TEST(ShieldRefusals, NameWhatIsWrong) {
   const Pool pool = pool_of("hand_over_wall", "", 2);

@@ -221,6 +221,23 @@ class States(unittest.TestCase):
             ends.append((pool.hash(), shield.state()))
         self.assertEqual(*ends)
 
+    def test_a_plan_of_ones_own_is_tried(self):
+        pool = worlds(2, {}, "hand_over_safe_joint")
+        shield = redman.Shield(pool, options={"hold": False})
+        plan = np.zeros((5, pool.action_dim), np.float32)
+        shield.set_plan(plan, env=1)
+        before = shield.plan(1)
+        self.assertTrue(same(before[:5], plan))
+        self.assertEqual(len(shield.plan(0)), 0)
+        plan[:, 2] = 1  # FF4 to the end of its range
+        with self.assertRaisesRegex(redman.StateError, "world 1: by the plan cost column 0"):
+            shield.set_plan(np.repeat(plan, 4, 0), env=1)
+        self.assertTrue(same(shield.plan(1), before))
+        with self.assertRaisesRegex(redman.ArgumentError, r"plan: shape \(3,\)"):
+            shield.set_plan([1, 2, 3])
+        shield.act(np.zeros((2, pool.action_dim)))
+        self.assertEqual(shield.kinds.tolist(), [shield.row(env).kind for env in (0, 1)])
+
     def test_a_reset_forgets_plans(self):
         pool = worlds(2)
         shield = redman.Shield(pool)

@@ -4703,6 +4703,19 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"shield": c_void_p, "pool": c_void_p, "env": c_int32, "io": POINTER(rdm_shield_row)},
         {}, True,
         """What was done in the last decision of world env."""),
+    "rdm_shield_get_kinds": Function(
+        c_int32, {"shield": c_void_p, "kind": c_void_p},
+        {"kind": Rows("int32", ("num_envs",))}, True,
+        """The RDM_SHIELD_... of each world's last decision to kind [num_envs]."""),
+    "rdm_shield_set_plan": Function(
+        c_int32, {"shield": c_void_p, "pool": c_void_p, "env": c_int32, "plan": c_void_p, "decisions": c_size_t},
+        {"plan": Rows("float32", ("decisions", "action_dim"))}, True,
+        """plan [decisions][action_dim], of a demonstration or a planner, becomes the plan of world env once
+        it is projected and clean in a copy; where it ends before the episode, a backup goes on. Where
+        nothing new is clean the world then follows it. STATE: a budget is exceeded, which the text names
+        with the control steps until then, or no episode runs; the plan before stays. UNSUPPORTED with
+        copies=K. RANGE: more decisions than an episode has.
+        """),
     "rdm_shield_get_plan": Function(
         c_int32, {"shield": c_void_p, "pool": c_void_p, "env": c_int32, "plan": c_void_p, "capacity": c_size_t, "size": c_void_p},
         {"plan": Rows("float32", ("capacity",))}, True,

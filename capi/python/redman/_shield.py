@@ -172,12 +172,8 @@ class Shield(Hinted):
     def kinds(self) -> npt.NDArray[np.int32]:
         """[num_envs] redman.ShieldKind of the last decision of each world."""
         out = np.empty(self.pool.num_envs, np.int32)
-        row = sized(_abi.rdm_shield_row)
-        with self.pool._lock, self._lock:
-            shield, pool, get = self._handle.value, self.pool._open(), lib.rdm_shield_get_row
-            for env in range(len(out)):
-                check(get(shield, pool, env, byref(row)))
-                out[env] = row.kind
+        with self._lock:
+            check(lib.rdm_shield_get_kinds(self._handle.value, out.ctypes.data))
         return out
 
     @property
@@ -195,6 +191,15 @@ class Shield(Hinted):
             out = np.empty(count.value, np.float32)
             check(lib.rdm_shield_get_plan(*arguments, out.ctypes.data, len(out), byref(count)))
         return out.reshape(-1, self.pool.action_dim)
+
+    def set_plan(self, plan: Any, env: int = 0) -> None:
+        """plan [decisions][action_dim] becomes the plan of one world, as a demonstration or a planner has it: it goes on where
+        nothing new is clean. StateError where a budget is exceeded by it, which says when; its plan before stays then."""
+        rows = np.ascontiguousarray(plan, np.float32)
+        if rows.ndim != 2 or rows.shape[1] != self.pool.action_dim:
+            raise ArgumentError(f"plan: shape {rows.shape}, not (decisions, {self.pool.action_dim})")
+        with self.pool._lock, self._lock:
+            check(lib.rdm_shield_set_plan(self._handle.value, self.pool._open(), int32(env, "env"), rows.ctypes.data, len(rows)))
 
     @property
     def stats(self) -> _abi.ShieldStats:
