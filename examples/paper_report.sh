@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # The tables of examples/paper_tables.sh out of the runs that it kept, without running anything:
 #   bash examples/paper_report.sh [RESULTS]   RESULTS: the folder with runs.csv, default examples/results
-# writes RESULTS/table1.md, fig7.md, second.md, claims.md and short.md, which hand_tasks.md has.
+# writes RESULTS/table1.md, command.md (with costs of commanded targets), fig7.md, second.md, shield.md, claims.md and short.md, which
+# hand_tasks.md has.
 set -eu
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 results=${1:-$root/examples/results}
@@ -103,7 +104,7 @@ short() {
 }
 
 claims() {
-  { means table1 | sed 's/^/T /'; means fig7 | sed 's/^/F /'; } | awk '
+  { means command | sed 's/^/T /'; means fig7 | sed 's/^/F /'; } | awk '
     { k = $2 SUBSEP $3; ret[k] = $7; cost[k] = $8; limit[k] = $4; tcost[k] = $15; swing[k] = $17; ok[k] = $22; there[k] = 1 }
     function at(task, algo) { return task SUBSEP algo }
     function row(name, verdict, figures) { printf "| %s | %s | %s |\n", name, verdict, figures }
@@ -148,14 +149,28 @@ claims() {
     }'
 }
 
-{ echo "# Table 1"; echo; table table1; note; [ -z "$(means long)" ] || { echo; echo "## 100 M steps"; echo; table long; }; } > "$results/table1.md"
-{ echo "# Fig. 7"; echo; table fig7; note; } > "$results/fig7.md"
-{ echo "# With a second limit"; echo; table second; note; } > "$results/second.md"
-{ echo "# What the paper says of its algorithms"; echo; claims; } > "$results/claims.md"
-{
-  # shellcheck disable=SC2086
-  short table1 $order
+# page TITLE PART [LONG]: a table, and the one of long runs of the same.
+page() {
+  echo "# $1"
   echo
-  # shellcheck disable=SC2086
-  short fig7 $order
+  table "$2"
+  note
+  [ -n "${3:-}" ] || return 0
+  [ -z "$(means "$3")" ] || { echo; echo "## 100 M steps"; echo; table "$3"; }
+}
+page "Table 1" table1 long > "$results/table1.md"
+page "Table 1, with costs of commanded targets" command command_long > "$results/command.md"
+page "Fig. 7" fig7 > "$results/fig7.md"
+{ page "With a second limit" second; echo; echo "## With costs of commanded targets"; echo; table command_second; } > "$results/second.md"
+page "Learning under a shield" shield > "$results/shield.md"
+{ echo "# What the paper says of its algorithms"; echo; echo "Throws with costs of commanded targets, which the paper's figures fit."; echo; claims; } > "$results/claims.md"
+{
+  for part in "table1 Throws, with costs of measured angles" "command Throws, with costs of commanded targets" "fig7 Others"; do
+    [ -n "$(means "${part%% *}")" ] || continue
+    echo "${part#* }:"
+    echo
+    # shellcheck disable=SC2086
+    short "${part%% *}" $order
+    echo
+  done
 } > "$results/short.md"

@@ -1,32 +1,34 @@
 #!/usr/bin/env bash
-# The paper's experiments, measured again: Table 1 and Fig. 6 (eight algorithms on the four throws with costs of the
-# robot's state), Fig. 7 (six tasks with costs of the environment's state), rows with a second cost, and what the
-# paper claims of its algorithms. Finished runs are kept and stopped ones go on, so the script can be stopped and
-# called again, also where only RESULTS is left of earlier calls (a run with a row there is done; AGAIN=1 runs it
+# The paper's experiments, measured again: Table 1 and Fig. 6 (eight algorithms, PPO, and PPO under a shield on the four throws with
+# costs of the robot's state), Fig. 7 (six tasks with costs of the environment's state), rows with a second cost, PPO under a shield
+# on all ten tasks, and what the paper claims of its algorithms. Finished runs are kept and stopped ones go on, so the script can be
+# stopped and called again, also where only RESULTS is left of earlier calls (a run with a row there is done; AGAIN=1 runs it
 # anew): seed after seed, so that the tables are whole, if thin, as early as can be.
 #   bash examples/paper_tables.sh [OUT] [RESULTS]   OUT: folder of the runs, default runs/paper
 #                                                   RESULTS: what is kept of them, default examples/results
-# Environment: REDMAN (the tool), PARTS ("table1 fig7 second": what is trained), SEEDS ("0 1 2"), JOBS (runs at once,
-# one thread each; 2), STEPS (control steps; else 10 million of a throw, and by task in Fig. 7), LONG (algorithms
-# that have the paper's 100 million steps with the first seed; ""), LONG_TASKS (the four throws), TASKS, ALGOS (those
-# of a part that are wanted).
+# Environment: REDMAN (the tool), PARTS ("table1 fig7 second shield": what is trained; `command`: Table 1 with costs of commanded targets,
+# and a row that projects actions), SEEDS ("0 1 2"), JOBS (runs at once, one thread each; 2), STEPS (control steps; else 10 million of a
+# throw and under a shield, and by task in Fig. 7), LONG (algorithms that have the paper's 100 million steps with the first seed; ""),
+# LONG_TASKS (the four throws), TASKS, ALGOS (those of a part that are wanted).
 #
 # RESULTS/runs.csv has a row for each run: its command, seed, steps, wall time; the mean action and the policy with its
-# noise over 100 fresh episodes each; the last tenth of training. RESULTS/runs/NAME is its configuration and its
-# training, a hundredth in each row (`redman plot` draws it), of a LONG one its policy too. RESULTS/*.md are the
-# tables, feasible first (made by examples/paper_report.sh out of runs.csv), RESULTS/*.svg the curves.
+# noise over 100 fresh episodes each; the last tenth of training; control steps that violated in training; the hash of its
+# policy. RESULTS/*.md are the tables, feasible first (made by examples/paper_report.sh out of runs.csv), RESULTS/*.svg the
+# curves. The runs themselves, with all that `redman plot`, `eval` and `render` read, stay in OUT; OUT/redman-runs.tar.gz has them
+# in one file, whose bytes are those of the runs alone.
 set -eu
 # shellcheck source=examples/runs.sh
 . "$(dirname "$0")/runs.sh"
 out=${1:-$root/runs/paper} results=${2:-$root/examples/results}
-parts=${PARTS:-table1 fig7 second} seeds=${SEEDS:-0 1 2}
+parts=${PARTS:-table1 fig7 second shield} seeds=${SEEDS:-0 1 2}
 throws="hand_over_safe_finger hand_over_safe_joint catch_underarm_safe_finger catch_underarm_safe_joint"
 props="grasp reorient hand_over_wall jenga pick_bottles clean_house"
 eight="cpo trpo_lag ppo_lag p3o pcpo focops cppo_pid ipo"
-mkdir -p "$out" "$results/runs"
+mkdir -p "$out" "$results"
 
-# steps TASK ALGO
+# steps TASK ALGO PART
 steps() {
+  [ "${3:-}" != shield ] || { echo 10000000; return; }
   case $1.$2 in
     jenga.*) echo 1500000 ;;
     hand_over_wall.trpo_lag) echo 36000000 ;;
@@ -37,11 +39,13 @@ steps() {
   esac
 }
 
-# algos PART TASK: Table 1 has eight; Fig. 7 PPO and PPO-Lag, TRPO-Lag where it does better, and every algorithm on
-# grasp and jenga.
+# algos PART TASK: Table 1 has eight and PPO, bare and shielded; Fig. 7 PPO and PPO-Lag, TRPO-Lag where it does better, and every
+# algorithm on grasp and jenga. ALGO+SHIELD learns under that shield.
 algos() {
   case $1.$2 in
-    table1.*) echo "$eight" ;;
+    table1.*) echo "$eight ppo ppo+predict" ;;
+    command.*) echo "$eight ppo+project" ;;
+    shield.*) echo "ppo+predict" ;;
     fig7.grasp | fig7.jenga) echo "ppo ppo_lag focops cppo_pid p3o trpo trpo_lag cpo pcpo ipo" ;;
     fig7.hand_over_wall) echo "ppo ppo_lag trpo_lag" ;;
     fig7.*) echo "ppo ppo_lag" ;;
@@ -65,13 +69,14 @@ wanted() { case " ${2:-$1} " in *" $1 "*) ;; *) return 1 ;; esac }
 rows() {
   local first=${seeds%% *} seed part task algo tasks
   for seed in $seeds; do for part in $parts; do
-    case $part in table1) tasks=$throws ;; fig7) tasks=$props ;; *) tasks="hand_over_safe_finger catch_underarm_safe_finger jenga" ;; esac
+    case $part in table1 | command) tasks=$throws ;; fig7 | shield) tasks=$props ;; *) tasks="hand_over_safe_finger catch_underarm_safe_finger jenga" ;; esac
     for task in $tasks; do
       wanted "$task" "${TASKS:-}" || continue
       for algo in $(algos "$part" "$task"); do
         wanted "$algo" "${ALGOS:-}" || continue
         case $part in
           second) echo "$task.$algo.second.$seed second $task $algo $seed ${STEPS:-$(steps "$task" "$algo")} $(second "$task" "$algo" | xargs)" ;;
+          command | shield) echo "$task.$algo.$part.$seed $part $task $algo $seed ${STEPS:-$(steps "$task" "$algo" "$part")}" ;;
           *) echo "$task.$algo.$seed $part $task $algo $seed ${STEPS:-$(steps "$task" "$algo")}" ;;
         esac
       done
@@ -93,8 +98,10 @@ run_one() {  # a row
   local name=$1 part=$2 task=$3 algo=$4 seed=$5 n=$6
   shift 6
   # the paper's Table 1 fits costs of commanded targets alone: tasks/costs.md
-  case " $throws " in *" $task "*) set -- "$@" --set cost_mode=command ;; esac
-  if trained "$out/$name" --task "$task" --algo "$algo" --seed "$seed" --steps "$n" --no-tensorboard "$@" &&
+  case $part in command) set -- "$@" --set cost_mode=command ;; shield) set -- "$@" --from trained ;; esac
+  # a penalty teaches the network what the projection would do for it
+  case $algo in *+predict) set -- "$@" --shield predict ;; *+project) set -- "$@" --shield project --set shield_penalty=0.1 ;; esac
+  if trained "$out/$name" --task "$task" --algo "${algo%%+*}" --seed "$seed" --steps "$n" --no-tensorboard "$@" &&
     sampled "$out/$name" "$seed" &&
     { [ "$part" != second ] || kept "$out/$name.mean.json" eval --policy "$out/$name" --episodes 100 --seed $((1000000 + seed)); }; then
     return
@@ -113,24 +120,10 @@ rows | {
 
 # ---- what is kept
 
-# condensed CSV: a hundredth of training in a row, under the names of progress.csv.
-condensed() {
-  awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i
-      n = split("Metrics/EpRet Metrics/EpCost Metrics/EpLen Metrics/FallRate Metrics/SuccessRate Metrics/LagrangeMultiplier", key, " ")
-      head = "TotalEnvSteps,Time/Total"; for (k = 1; k <= n; ++k) head = head "," key[k]
-      print head; next }
-    { ++rows; steps[rows] = $at["TotalEnvSteps"]; time[rows] = $at["Time/Total"]
-      for (k = 1; k <= n; ++k) v[rows, k] = $at[key[k]] }
-    END { for (b = 1; b <= 100; ++b) { from = int((b - 1) * rows / 100) + 1; to = int(b * rows / 100); if (to < from) continue
-      printf "%.0f,%.1f", steps[to], time[to]
-      for (k = 1; k <= n; ++k) { s = 0; m = 0
-        for (i = from; i <= to; ++i) if (v[i, k] ~ /^[-+0-9.]/) { s += v[i, k]; ++m }
-        printf m ? ",%.5g" : ",nan", m ? s / m : 0 }
-      print "" } }' "$1"
+# wall_seconds CSV: of a run and of what it went on from.
+wall_seconds() {
+  awk -F, 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next } { t = $at["Time/Total"] } END { printf "%.1f", t }' "$1"
 }
-
-# wall_seconds CSV: of a run and of what it went on from, by its condensed training.
-wall_seconds() { tail -n 1 "$1" | cut -d, -f2; }
 
 # of_second FILE: limit and mean cost of the second column that has a limit, of an evaluation; "," without one.
 of_second() {
@@ -139,18 +132,14 @@ of_second() {
     awk -F, 'NR == 1 { for (i = 2; i <= NF; ++i) if ($i >= 0) k = i; limit = $k } NR == 2 { print k ? limit "," $k : "," }'
 }
 
-header="name,part,task,algorithm,seed,limit,return,cost,cost_stderr,falls,success,length,sampled_return,sampled_cost,sampled_over,train_return,train_cost,train_over,train_swing,env_steps,wall_seconds,seconds_to_half,second_limit,second_cost,flags"
+header="name,part,task,algorithm,seed,limit,return,cost,cost_stderr,falls,success,length,sampled_return,sampled_cost,sampled_over,train_return,train_cost,train_over,train_swing,env_steps,wall_seconds,seconds_to_half,second_limit,second_cost,flags,violations,policy_sha256"
 rows | while read -r name part task algo seed n flags; do
   f=$out/$name.json s=$out/$name.sampled.json
   if [ ! -s "$f" ] || [ ! -s "$s" ]; then continue; fi
   limit=$(value cost_limit "$f")
   case $limit in [0-9]*) ;; *) limit=-1 ;; esac
-  mkdir -p "$results/runs/$name"
-  condensed "$out/$name/progress.csv" > "$results/runs/$name/progress.csv"
-  cp "$out/$name/config.json" "$results/runs/$name/config.json"
-  [ "$part" != long ] || cp "$out/$name/policy.rdm" "$results/runs/$name/policy.rdm"  # an hour each: eval, render use it
   tail=$(last_tenth "$out/$name/progress.csv" "$limit")
-  echo "$name,$part,$task,$algo,$seed,$limit,$(value return "$f"),$(value cost "$f"),$(value cost_stderr "$f"),$(value fall_rate "$f"),$(value success_rate "$f"),$(value length "$f"),$(value return_mean "$s"),$(value cost_mean "$s"),$(value violation_rate "$s"),$tail,$(value env_steps "$f"),$(wall_seconds "$results/runs/$name/progress.csv"),$(reached "$out/$name/progress.csv"),$(of_second "$out/$name.mean.json"),$flags"
+  echo "$name,$part,$task,$algo,$seed,$limit,$(value return "$f"),$(value cost "$f"),$(value cost_stderr "$f"),$(value fall_rate "$f"),$(value success_rate "$f"),$(value length "$f"),$(value return_mean "$s"),$(value cost_mean "$s"),$(value violation_rate "$s"),$tail,$(value env_steps "$f"),$(wall_seconds "$out/$name/progress.csv"),$(reached "$out/$name/progress.csv"),$(of_second "$out/$name.mean.json"),$flags,$(value training_violating_steps "$f"),$(sha256sum < "$out/$name/policy.rdm" | cut -d" " -f1)"
 done > "$results/runs.csv.new"
 # runs of other calls stay
 {
@@ -166,12 +155,15 @@ rm "$results/runs.csv.new"
 mv "$results/runs.csv.part" "$results/runs.csv"
 bash "$root/examples/paper_report.sh" "$results"
 
-# drawn PART PICTURE: the curves of all runs of a part that are kept.
+# drawn PART PICTURE: the curves of the runs of a part that are here.
 drawn() {
   local list
-  list=$(awk -F, -v p="$1" -v at="$results/runs/" '$2 == p { print at $1 }' "$results/runs.csv")
+  list=$(awk -F, -v p="$1" '$2 == p { print $1 }' "$results/runs.csv" | while read -r name; do [ ! -s "$out/$name.json" ] || echo "$out/$name"; done)
   # shellcheck disable=SC2086
   [ -z "$list" ] || "$redman" plot $list --out "$results/$2" > /dev/null
 }
 drawn table1 fig6.svg
 drawn fig7 fig7.svg
+drawn shield shield.svg
+(cd "$out" && find . -name config.json -o -name progress.csv -o -name policy.rdm | sort |
+  tar --create --files-from - --owner=0 --group=0 --numeric-owner --mtime=@0 --mode=0644 | gzip -n) > "$out/redman-runs.tar.gz"
