@@ -11,7 +11,7 @@ namespace {
 
 constexpr char kCheckpointMagic[8] = {'R', 'D', 'M', 'C', 'H', 'E', 'C', 'K'};
 constexpr uint32_t kCheckpointVersion = 1;
-constexpr size_t kMaxNote = 1u << 26;  // bytes
+constexpr size_t kMaxNote = 1u << 29;  // bytes
 
 template <class F>
 void section(Writer& w, const char tag[4], F&& body) {

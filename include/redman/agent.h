@@ -263,7 +263,7 @@ RDM_API rdm_result rdm_agent_write_state(const rdm_agent *a, void *bytes, size_t
                                                          * size */
 RDM_API rdm_result rdm_agent_read_state(rdm_agent *a, const void *bytes,
                                         size_t size); /* of bytes [size] */
-/* Agent, pool (may be NULL) and a note [note_size] of the host's own, to 2^26 bytes, in one file,
+/* Agent, pool (may be NULL) and a note [note_size] of the host's own, to 2^29 bytes, in one file,
  * replaced atomically. */
 RDM_API rdm_result rdm_checkpoint_write(const char *path, const rdm_agent *a, const rdm_pool *p,
                                         const void *note, size_t note_size);

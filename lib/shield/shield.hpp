@@ -180,6 +180,7 @@ class Shield {
     double noise = 0;               // of its first action, in units of option noise
   };
 
+  static size_t sz(int32_t n) { return static_cast<size_t>(n); }
   void read_options(const ShieldConfig& config);
   void read_budgets(const double* budgets);
   void declare_guards(const Pool& pool);
