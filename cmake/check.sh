@@ -31,6 +31,7 @@ physics|the truth table, the bundled policies at other substeps|the engine
 slow|learning and long random runs|before a release
 coverage|which lines no test runs, in build/coverage.txt|before a release
 hard [MINUTES]|tries to break the library, for an hour|before a release
+release|all of the above in a clean copy of the commit, the files to publish, and one page of what passed|a release
 END
 )
 case $mode in
@@ -73,7 +74,7 @@ total_of() {
     END { print passed + 0 " passed, " failed + 0 " failed"; exit failed > 0 || passed == 0 }' "$1"
 }
 
-if [ "$mode" != quick ]; then
+if [ "$mode" != quick ] && [ "$mode" != release ]; then
   # shellcheck disable=SC2086
   {
     need $library_packages libgtest-dev
@@ -88,6 +89,9 @@ if [ "$mode" != quick ]; then
   }
 fi
 case $mode in
+  release)
+    exec bash cmake/release.sh
+    ;;
   quick)
     [ -f build/dev/build.ninja ] || configure dev
     cmake --build --preset dev -j "$(nproc)" --target quick >&2 || die "preset dev could not be built: see above"

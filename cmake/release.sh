@@ -1,0 +1,69 @@
+#!/usr/bin/env bash
+# release.sh [MODE...]: what a release is made of. Runs the modes of check.sh, all of them unless some are given, in a clean copy of the
+# commit, then makes the files to publish, and writes one page: what passed, on which machine, in what time, and the hash of
+# each file. It can be stopped and called again: a mode that has passed for this commit is not run again.
+#   build/published/COMMIT/README.md   the page         build/published/COMMIT/MODE.log   what a mode said
+#   build/published/COMMIT/files/      source archive, .deb files, wheel, policies, SHA256SUMS
+# The exit status is 0 when every mode has passed and every file is there.
+set -u
+cd "$(dirname "$0")/.." || exit 1
+die() { echo "release.sh: $*" >&2; exit 1; }
+[ -z "$(git status --porcelain)" ] || die "the tree has changes: commit them first"
+all=$(bash cmake/check.sh --help | awk 'NR > 1 { print $1 }' | grep -vxE 'quick|coverage|release')
+modes=${*:-$all}
+for mode in $modes; do echo "$all" | grep -qxF -- "$mode" || die "check.sh has no mode '$mode'"; done
+commit=$(git rev-parse HEAD) short=$(git rev-parse --short=12 HEAD)
+version=$(sed -n 's/^set(RDM_VERSION_[A-Z]* \([0-9]*\))$/\1/p' CMakeLists.txt | paste -sd.)
+out=$PWD/build/published/$short files=$PWD/build/published/$short/files copy=$PWD/build/published/tree
+mkdir -p "$files"
+[ -d "$copy/.git" ] || git clone -q . "$copy" || die "cannot copy the tree"
+# builds stay, so that the next commit is not from nothing; nothing else does
+git -C "$copy" fetch -q "$PWD" HEAD || die "cannot fetch $commit"
+{ git -C "$copy" checkout -q -f "$commit" && git -C "$copy" clean -qfd; } || die "cannot check out $commit"
+
+for mode in $modes; do
+  if [ -s "$out/$mode.passed" ]; then continue; fi
+  start=$(date +%s)
+  (cd "$copy" && bash cmake/check.sh "$mode") > "$out/$mode.log" 2>&1 < /dev/null
+  status=$?
+  line="$(grep -E '^[0-9]+ passed, [0-9]+ failed$' "$out/$mode.log" | tail -n1)|$(($(date +%s) - start))|$(date -u +%F)"
+  rm -f "$out/$mode.failed"
+  if [ $status -eq 0 ]; then echo "$line" > "$out/$mode.passed"; else echo "$line" > "$out/$mode.failed"; fi
+  echo "$mode: $([ $status -eq 0 ] && echo passed || echo "failed, see $out/$mode.log"), ${line#*|}" | sed 's/|.*/ s/' >&2
+done
+
+# ---- files
+lost=0
+git archive --format=tar --prefix="redman-$version/" "$commit" | gzip -9n > "$files/redman-$version.tar.gz"
+git archive --format=tar --prefix="redman-policies-$version/" "$commit:examples/policies" | gzip -9n > "$files/redman-policies-$version.tar.gz"
+# of mode packages
+find "$copy/build/package/packages" -name '*.deb' -exec cp {} "$files" \; 2> /dev/null
+find "$copy/build/wheel" -name '*.whl' -exec cp {} "$files" \; 2> /dev/null
+ls "$files"/*.deb > /dev/null 2>&1 && ls "$files"/*.whl > /dev/null 2>&1 || lost=1
+(cd "$files" && find . -type f ! -name SHA256SUMS -printf '%P\n' | sort | xargs sha256sum > SHA256SUMS)
+
+# ---- the page
+failed=0
+{
+  echo "# redman $version"
+  echo
+  echo "Commit \`$commit\`. Machine: $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n1), $(nproc) processors, $(awk '/MemTotal/ { printf "%.0f GiB", $2 / 1048576 }' /proc/meminfo); $(. /etc/os-release && echo "$PRETTY_NAME"); $(c++ --version | head -n1)."
+  echo
+  echo "| \`check.sh\` | what it asks | result | time | day |"
+  echo "|---|---|---|---|---|"
+  for mode in $all; do
+    what=$(bash cmake/check.sh --markdown | awk -F' [|] |^[|] ' -v mode="$mode" '{ name = $2; gsub(/`/, "", name); sub(/ .*/, "", name) } name == mode { print $3 }')
+    if [ -s "$out/$mode.passed" ]; then verdict=passed; elif [ -s "$out/$mode.failed" ]; then verdict=FAILED; else verdict="not run"; fi
+    [ "$verdict" = passed ] || failed=1
+    IFS='|' read -r counts seconds day < <(cat "$out/$mode.passed" "$out/$mode.failed" 2> /dev/null)
+    echo "| \`$mode\` | $what | $verdict${counts:+: $counts} | ${seconds:+$((seconds / 60)) min $((seconds % 60)) s} | ${day:-} |"
+    counts='' seconds='' day=''
+  done
+  echo
+  echo "| file | bytes | SHA-256 |"
+  echo "|---|---|---|"
+  while read -r hash file; do echo "| \`$file\` | $(stat -c %s "$files/$file") | \`$hash\` |"; done < "$files/SHA256SUMS"
+  [ $lost -eq 0 ] || { echo; echo "The .deb files or the wheel are not there: mode \`packages\` makes them."; }
+} > "$out/README.md"
+echo "$out/README.md"
+[ $failed -eq 0 ] && [ $lost -eq 0 ]
