@@ -4301,7 +4301,7 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_checkpoint_write": Function(
         c_int32, {"path": c_char_p, "a": c_void_p, "p": c_void_p, "note": c_void_p, "note_size": c_size_t},
         {}, False,
-        """Agent, pool (may be NULL) and a note [note_size] of the host's own, to 2^26 bytes, in one file,
+        """Agent, pool (may be NULL) and a note [note_size] of the host's own, to 2^29 bytes, in one file,
         replaced atomically.
         """),
     "rdm_checkpoint_read": Function(
