@@ -9,6 +9,7 @@ namespace tool {
 void finish_evaluation(Evaluation& e, const redman::Pool& pool, const Actor& actor,
                        const std::vector<Episode>& episodes) {
   e.summary = summarise(episodes, e.limits);
+  e.spread = spread_of(episodes, e.limits);
   e.violating_steps = pool.stats().violations;
   if (actor.shielded()) e.shield = actor.shielded()->counts();
 }
@@ -47,6 +48,8 @@ Json evaluation_json(const Evaluation& e, int32_t episodes) {
                {"cost_per_step", s.cost_per_step},
                {"violating_steps", e.violating_steps},
                {"feasible", feasible(s, e.limits)}};
+  put_spread(json, e.spread);
+  json["remarks"] = remarks_of(s, e.spread, e.limits, e.costs, episodes);
   if (e.shield) put_shield(json, *e.shield);
   put_trouble(json, s.trouble);
   return json;
@@ -54,18 +57,35 @@ Json evaluation_json(const Evaluation& e, int32_t episodes) {
 
 std::string evaluation_text(const Evaluation& e, int32_t episodes) {
   const Summary& s = e.summary;
-  std::string text = format(
-      "%d episodes: return %.3f +- %.3f, length %.1f, success %.1f%% (%.2f steps), falls %.1f%%\n", episodes,
-      s.return_mean, s.return_std, s.length_mean, 100 * s.success_rate, s.success_steps, 100 * s.fall_rate);
-  Table costs({"cost", "mean", "std", "limit"});
-  for (size_t k = 0; k < e.costs.size(); ++k)
-    costs.add({e.costs[k], format("%.3f", s.cost_mean[k]), format("%.3f", s.cost_std[k]),
-               e.limits[k] < 0 ? "-" : number_text(e.limits[k])});
-  return text + costs.text() +
-         format("episodes over a limit: %.1f%%; cost per step: %.4f; violating steps: %lld\n",
-                100 * s.violation_rate, s.cost_per_step, static_cast<long long>(e.violating_steps)) +
-         (e.shield ? shield_text(*e.shield) : "") +
-         (e.magnitudes ? "costs are magnitudes: sums of cost_raw (cost_signal=raw)\n" : "");
+  const Spread& spread = e.spread;
+  const std::vector<double>& of_return = spread.return_quantiles;
+  const std::string mean_return = measured(s.return_mean, s.return_stderr);
+  std::string text = format("%d episode%s: return ", episodes, episodes == 1 ? "" : "s") + mean_return;
+  Table table({"of an episode", "mean +- se", "95% interval", "median", "0.9", "CVaR", "limit", "over"});
+  table.add({"return", mean_return, interval_text(spread.return_interval), format("%.3f", of_return[1]),
+             format("%.3f", of_return[2]), "-", "-", "-"});
+  for (size_t k = 0; k < e.costs.size(); ++k) {
+    const Spread::Cost& c = spread.costs[k];
+    const bool limited = e.limits[k] >= 0;
+    const std::string mean = measured(s.cost_mean[k], s.cost_stderr[k]);
+    const std::string limit = limited ? number_text(e.limits[k]) : "-";
+    if (k == 0 || limited) text += ", " + e.costs[k] + ' ' + mean + (limited ? " (limit " + limit + ')' : "");
+    table.add({e.costs[k], mean, interval_text(c.interval), format("%.3f", c.quantiles[0]),
+               format("%.3f", c.quantiles[1]), format("%.3f", c.cvar), limit,
+               limited ? format("%.1f%%", 100 * c.over) : "-"});
+  }
+  text += format(", success %.1f%%, over a limit %.1f%%", 100 * s.success_rate, 100 * s.violation_rate);
+  if (!e.costs.empty()) text += format(", CVaR of the cost %.3f", spread.costs[0].cvar);
+  text += "\n+- is a standard error, CVaR the mean of the worst tenth of the episodes\n";
+  text +=
+      table.text() +
+      format("length %.1f, success in %.2f steps, falls %.1f%%, cost per step %.4f, violating steps %lld\n",
+             s.length_mean, s.success_steps, 100 * s.fall_rate, s.cost_per_step,
+             static_cast<long long>(e.violating_steps));
+  if (e.shield) text += shield_text(*e.shield);
+  if (e.magnitudes) text += "costs are magnitudes: sums of cost_raw (cost_signal=raw)\n";
+  for (const std::string& remark : remarks_of(s, spread, e.limits, e.costs, episodes)) text += remark + '\n';
+  return text;
 }
 
 namespace {
@@ -97,7 +117,9 @@ Report run_eval(EvalFlags flags) {
 void add_eval(CLI::App& app, Run& run) {
   auto flags = std::make_shared<EvalFlags>();
   flags->pool.envs = kEvalEnvs;
-  CLI::App* command = app.add_subcommand("eval", "Evaluate a policy over whole episodes");
+  CLI::App* command = app.add_subcommand("eval",
+                                         "Evaluate a policy over whole episodes: means with standard errors "
+                                         "and 95% intervals, quantiles, and the mean of the worst tenth");
   command->add_option(
       "--policy", flags->policy,
       "policy file, run folder, .demo file, trained, plan, demo, zero, hold or random; a run's task "

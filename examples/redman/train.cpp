@@ -240,6 +240,9 @@ Report train_alone(const TrainFlags& flags, const Ranks* ranks) {
                {"fall_rate", s.fall_rate},
                {"length", s.length_mean},
                {"interrupted", trainer.interrupted()}};
+  json["return_stderr"] = s.return_stderr;
+  json["violation_rate"] = s.violation_rate;
+  put_spread(json, e.spread);
   put_trouble(json, s.trouble);
   put_trouble(json, trainer.trouble(), "training_");
   put_shields(json, trainer, e, shielded);
@@ -262,12 +265,12 @@ Report train_alone(const TrainFlags& flags, const Ranks* ranks) {
   text += format("steps    %lld in %.1f s, %.0f steps/s\n", static_cast<long long>(trainer.env_steps()),
                  trainer.seconds(), trainer.steps_per_second());
   text += format(
-      "policy over %d episodes: return %.3f, cost %.3f%s (limit %s), %s; success %.0f%%, falls %.0f%%, "
-      "length "
+      "policy over %d episodes: return %s, cost %s%s (limit %s), %s; success %.0f%%, falls %.0f%%, length "
       "%.0f\n",
-      kEvalEpisodes, s.return_mean, cost, e.magnitudes ? " in magnitudes" : "",
-      limit < 0 ? "none" : number_text(limit).c_str(), safe ? "feasible" : "not feasible",
-      100 * s.success_rate, 100 * s.fall_rate, s.length_mean);
+      kEvalEpisodes, measured(s.return_mean, s.return_stderr).c_str(),
+      measured(cost, s.cost_stderr.empty() ? 0 : s.cost_stderr[0]).c_str(),
+      e.magnitudes ? " in magnitudes" : "", limit < 0 ? "none" : number_text(limit).c_str(),
+      safe ? "feasible" : "not feasible", 100 * s.success_rate, 100 * s.fall_rate, s.length_mean);
   if (shielded.shield) text += shields_text(json, shielded);
   return {json, text};
 }

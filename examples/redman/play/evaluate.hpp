@@ -4,6 +4,7 @@
 
 #include "common/report.hpp"
 #include "play/episodes.hpp"
+#include "play/spread.hpp"
 
 namespace tool {
 
@@ -11,6 +12,7 @@ struct Evaluation {
   std::vector<double> limits;  // [cost_dim], < 0: none
   std::vector<std::string> costs;
   Summary summary;
+  Spread spread;
   int64_t violating_steps = 0;         // in which column 0 or a limited one was above 0
   std::optional<ShieldCounts> shield;  // what it did, where there is one
   bool magnitudes = false;             // what costs are sums of
