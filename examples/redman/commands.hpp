@@ -23,6 +23,7 @@ void add_info(CLI::App& app, Run& run);
 void add_export(CLI::App& app, Run& run);
 void add_plot(CLI::App& app, Run& run);
 void add_report(CLI::App& app, Run& run);
+void add_compare(CLI::App& app, Run& run);
 void add_hull(CLI::App& app, Run& run);
 void add_robots(CLI::App& app, Run& run);
 void add_robot(CLI::App& app, Run& run);

@@ -147,13 +147,16 @@ struct Command {
   void (*add)(CLI::App&, Run&);
 };
 constexpr Command kCommands[] = {
-    {"tasks", add_tasks},           {"algos", add_algos},     {"robots", add_robots},
-    {"robot", add_robot},           {"objects", add_objects}, {"object", add_object},
-    {"train", add_train},           {"eval", add_eval},       {"baseline", add_baseline},
-    {"rollout", add_rollout},       {"plan", add_plan},       {"render", add_render},
-    {"bench", add_bench},           {"plot", add_plot},       {"report", add_report},
-    {"export", add_export},         {"hull", add_hull},       {"info", add_info},
-    {"completion", add_completion},
+    {"tasks", add_tasks},       {"algos", add_algos},
+    {"robots", add_robots},     {"robot", add_robot},
+    {"objects", add_objects},   {"object", add_object},
+    {"train", add_train},       {"eval", add_eval},
+    {"baseline", add_baseline}, {"rollout", add_rollout},
+    {"plan", add_plan},         {"render", add_render},
+    {"bench", add_bench},       {"plot", add_plot},
+    {"report", add_report},     {"compare", add_compare},
+    {"export", add_export},     {"hull", add_hull},
+    {"info", add_info},         {"completion", add_completion},
 };
 
 // One that the first word names goes without the others: CLI11 takes most of a short command's time to note the

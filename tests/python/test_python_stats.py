@@ -1,12 +1,20 @@
-"""redman.stats, and what an Evaluation says of its episodes: each number on cases that can be worked out by hand."""
+"""redman.stats, and what an Evaluation says of its episodes: each number on cases that can be worked out by hand,
+and the same of the tool."""
+import json
 import math
+import os
+import subprocess
+import tempfile
 import unittest
+from pathlib import Path
 
 import numpy as np
 
 import redman
 from redman import stats
 from redman._play import summary
+
+TOOL = os.environ.get("REDMAN_TOOL")
 
 
 def evaluation(returns, costs, limits=(4,), successes=None, status=None):
@@ -170,6 +178,56 @@ class Episodes(unittest.TestCase):
         self.assertEqual(e.violating_steps, 4)
         self.assertEqual((e.episodes, e.decisions, e.interventions), (5, None, None))
         self.assertNotIn("array", repr(e))
+
+
+@unittest.skipUnless(TOOL, "the command-line tool was not built")
+class Tool(unittest.TestCase):
+    """`redman compare` and `redman eval` say the same numbers."""
+
+    def test_numbers_of_runs(self):
+        draw = np.random.RandomState(3)
+        scores = {name: {task: (10 * draw.standard_normal(runs) + mean).tolist() for task, runs in (("x", 3), ("y", 5))}
+                  for name, mean in (("a", 10), ("b", 4), ("c", 0))}
+        with tempfile.TemporaryDirectory() as folder:
+            rows = Path(folder, "rows.csv")
+            rows.write_text("algorithm,task,return\n" + "".join(
+                f"{name},{task},{score!r}\n" for name, tasks in scores.items() for task, of in tasks.items() for score in of))
+            said = json.loads(subprocess.run([TOOL, "compare", rows, "--over", "task", "--json"], check=True,
+                                             capture_output=True).stdout)
+        self.assertEqual(len(said["rows"]), 3)
+        for row in said["rows"]:
+            of = scores[row["name"]]
+            self.assertEqual(row["runs"], 8)
+            self.assertAlmostEqual(row["iqm"], stats.iqm(of), places=12)
+            np.testing.assert_allclose(row["interval"], stats.interval(of), rtol=1e-12)
+            self.assertAlmostEqual(row["sd"], np.std(of["x"] + of["y"], ddof=1), places=12)
+        self.assertEqual(len(said["pairs"]), 3)
+        for pair in said["pairs"]:
+            of, other = scores[pair["better"]], scores[pair["than"]]
+            np.testing.assert_allclose([pair["probability"], *pair["interval"]], stats.improvement(of, other), rtol=1e-12)
+
+            def difference(drawn):
+                one, less = (np.concatenate([np.array(runs)[rows] for runs, rows in zip(tasks.values(), half)], axis=1)
+                             for tasks, half in ((of, drawn[:2]), (other, drawn[2:])))
+                return stats.iqm_of(one) - stats.iqm_of(less)
+
+            ends = stats.bootstrap([3, 5, 3, 5], difference, 0.95)
+            np.testing.assert_allclose(pair["difference_interval"], ends, rtol=1e-10)
+            letters = [set(row["group"]) for row in said["rows"] if row["name"] in (pair["better"], pair["than"])]
+            self.assertEqual(letters[0].isdisjoint(letters[1]), not ends[0] <= 0 <= ends[1])
+
+    def test_numbers_of_episodes(self):
+        said = json.loads(subprocess.run([TOOL, "eval", "--task", "point_goal1", "--policy", "trained", "--episodes", "40",
+                                          "--seed", "5", "--json"], check=True, capture_output=True).stdout)
+        e = redman.evaluate("trained", "point_goal1", episodes=40, seed=5)
+        for name in ("return_mean", "return_stderr", "cost_mean", "cost_stderr", "success_stderr", "return_iqm", "cost_cvar",
+                     "violation_rate"):
+            np.testing.assert_allclose(said[name], getattr(e, name), rtol=1e-12, err_msg=name)
+        for q, costs in e.cost_quantiles.items():
+            np.testing.assert_allclose(said["cost_quantiles"][str(q)], costs, rtol=1e-12)
+        np.testing.assert_allclose(said["interval"], e.interval("return_mean"), rtol=1e-12)
+        np.testing.assert_allclose(said["cost_interval"], e.interval("cost_mean"), rtol=1e-12)
+        np.testing.assert_allclose(said["return_quantiles"]["0.1"], np.quantile(e.returns, 0.1), rtol=1e-12)
 
 
 if __name__ == "__main__":

@@ -14,7 +14,8 @@ namespace {
 constexpr size_t kResamples = 10'000;
 constexpr size_t kDrawnTogether = size_t{1} << 17;  // rows, as Python does; a stratum's come in one piece
 
-// `count` numbers below `size`, as numpy's RandomState.randint draws them: what is masked and too large is drawn again.
+// `count` numbers below `size`, as numpy's RandomState.randint draws them: what is masked and too large is
+// drawn again.
 void draw_rows(std::mt19937& random, size_t size, size_t count, uint32_t* out) {
   const auto most = static_cast<uint32_t>(size - 1);
   uint32_t mask = most;
@@ -210,8 +211,8 @@ std::vector<std::string> group_letters(size_t count, const std::function<bool(si
   constexpr size_t kMostGroups = 1000;
   std::vector<std::string> letters(count);
   if (count == 0 || count > kMostGrouped) return letters;
-  // All in one; a group that holds two that are told apart becomes two without the one and without the other; what is
-  // part of another group goes.
+  // All in one; a group that holds two that are told apart becomes two, without the one and without the
+  // other; what is part of another group goes.
   std::vector<std::vector<bool>> groups{std::vector<bool>(count, true)};
   const auto within = [](const std::vector<bool>& part, const std::vector<bool>& whole) {
     for (size_t i = 0; i < part.size(); ++i)

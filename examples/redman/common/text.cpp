@@ -101,6 +101,16 @@ std::string short_count(double value) {
   return format("%.3g", value);
 }
 
+std::vector<std::string> cells_of(const std::string& line, size_t most) {
+  std::vector<std::string> cells;
+  for (size_t at = 0; at <= line.size() && cells.size() <= most;) {
+    const size_t end = std::min(line.find(',', at), line.size());
+    cells.push_back(line.substr(at, end - at));
+    at = end + 1;
+  }
+  return cells;
+}
+
 std::string Table::text() const {
   std::vector<size_t> width;
   for (const auto& h : header_) width.push_back(h.size());

@@ -18,6 +18,9 @@ bool is_utf8(const std::string& text);
 // The same where HTML and SVG may have it, between tags and in quotes.
 std::string html_text(const std::string& text);
 
+// The cells of a line with commas between them, at most `most` and one more.
+std::vector<std::string> cells_of(const std::string& line, size_t most);
+
 // "1.2k", "3.5M": a count for progress lines and axes.
 std::string short_count(double value);
 

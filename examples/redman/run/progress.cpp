@@ -72,17 +72,6 @@ void visit(const std::vector<CostColumn>& columns, const Row& row, Add add) {
 
 constexpr size_t kMostColumns = 1000;
 
-// The cells of a line, at most `most` and one more.
-std::vector<std::string> split(const std::string& line, size_t most) {
-  std::vector<std::string> cells;
-  for (size_t at = 0; at <= line.size() && cells.size() <= most;) {
-    const size_t end = std::min(line.find(',', at), line.size());
-    cells.push_back(line.substr(at, end - at));
-    at = end + 1;
-  }
-  return cells;
-}
-
 double number(const std::string& cell) {
   constexpr double kMost = 1e100;  // sums and squares of such numbers are finite
   char* end = nullptr;
@@ -104,7 +93,7 @@ std::string curve_row(const std::string& header, const std::vector<CostColumn>& 
   visit(costs, Row{e, steps_in_epoch, evaluation, times},
         [&](const std::string& name, double value) { values[name] = value; });
   std::string out;
-  for (const std::string& name : split(header, kMostColumns)) {
+  for (const std::string& name : cells_of(header, kMostColumns)) {
     const auto found = values.find(name);
     out += out.empty() ? "" : ",";
     out += found == values.end() || std::isnan(found->second) ? "nan" : format("%.9g", found->second);
@@ -119,7 +108,7 @@ Columns parse_progress(const char* text, size_t size) {
     const void* found = std::memchr(text + at, '\n', size - at);
     const size_t end = found ? static_cast<size_t>(static_cast<const char*>(found) - text) : size;
     const bool first = at == 0;
-    const auto cells = split(std::string(text + at, end - at), first ? kMostColumns : columns.size());
+    const auto cells = cells_of(std::string(text + at, end - at), first ? kMostColumns : columns.size());
     at = end + 1;
     if (first && cells.size() > kMostColumns)
       throw Failure("more than " + std::to_string(kMostColumns) + " columns");
