@@ -2,6 +2,8 @@
 #include "web/report.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <memory>
 
 #include "commands.hpp"
@@ -104,6 +106,7 @@ TaskReport report_of(const std::vector<const RunData*>& runs, const ReportFlags&
       }
     }
   rank(t.configurations);
+  t.seeds = seeds_of(t.configurations);
   for (const Configuration& c : t.configurations) {
     t.strips.emplace_back();
     if (flags.strip < 1) continue;
@@ -118,21 +121,41 @@ TaskReport report_of(const std::vector<const RunData*>& runs, const ReportFlags&
 
 Json ranking_json(const TaskReport& t) {
   Json out = Json::array();
-  for (const Configuration& c : t.configurations) {
+  for (size_t i = 0; i < t.configurations.size(); ++i) {
+    const Configuration& c = t.configurations[i];
+    const Seeds& s = t.seeds[i];
     const Outcome mean = c.mean();
-    Json costs = Json::object();
-    for (const CostOutcome& cost : mean.costs) costs[cost.name] = cost.mean;
+    Json costs = Json::object(), deviations = Json::object(), ratios = Json::object();
+    for (size_t k = 0; k < mean.costs.size(); ++k) {
+      costs[mean.costs[k].name] = mean.costs[k].mean;
+      deviations[mean.costs[k].name] = s.cost_sd[k];
+      if (mean.costs[k].limit >= 0) ratios[mean.costs[k].name] = s.cost_ratio[k];
+    }
     Json row = {{"task", t.task},
                 {"configuration", c.label},
                 {"runs", c.runs.size()},
                 {"feasible", mean.score().feasible},
                 {"evaluated", mean.evaluated},
                 {"return", mean.ret},
-                {"cost", costs}};
+                {"cost", costs},
+                {"return_sd", s.return_sd},
+                {"cost_sd", deviations},
+                {"return_iqm", s.return_iqm},
+                {"interval", interval_json(s.return_interval)},
+                {"group", s.group},
+                {"normalised_return", s.normalised_return},
+                {"normalised_cost", ratios},
+                {"training_cost_rate", s.training_cost_rate},
+                {"training_violating_steps", s.training_violating_steps}};
     put_trouble(row, mean.trouble);
     out.push_back(row);
   }
   return out;
+}
+
+// "12.3 +- 0.4", of one run without the deviation.
+std::string with_deviation(double mean, double deviation) {
+  return format("%.4g", mean) + (std::isnan(deviation) ? "" : format(" +- %.2g", deviation));
 }
 
 Report run_report(const ReportFlags& flags) {
@@ -147,19 +170,36 @@ Report run_report(const ReportFlags& flags) {
   std::vector<TaskReport> reports;
   Json json = {{"file", flags.html}, {"runs", runs.size()}, {"ranking", Json::array()}};
   std::string text;
+  size_t fewest = SIZE_MAX;  // runs of a configuration
   for (const std::string& task : tasks) {
     std::vector<const RunData*> own;
     for (const RunData& run : runs)
       if (run.task == task) own.push_back(&run);
     reports.push_back(report_of(own, flags));
-    Table table({task, "runs", "limits", "return", "cost"});
-    for (const Json& row : ranking_json(reports.back())) {
-      json["ranking"].push_back(row);
-      table.add({row["configuration"].get<std::string>(), std::to_string(row["runs"].get<size_t>()),
-                 row["feasible"].get<bool>() ? "within" : "over", format("%.4g", row["return"].get<double>()),
-                 row["cost"].contains("cost") ? format("%.4g", row["cost"]["cost"].get<double>()) : "-"});
+    Table table({task, "runs", "limits", "return +- sd", "IQM", "95% interval", "group", "cost +- sd"});
+    const TaskReport& t = reports.back();
+    for (const Json& row : ranking_json(t)) json["ranking"].push_back(row);
+    for (size_t i = 0; i < t.configurations.size(); ++i) {
+      const Outcome mean = t.configurations[i].mean();
+      fewest = std::min(fewest, t.configurations[i].runs.size());
+      const Seeds& s = t.seeds[i];
+      table.add({t.configurations[i].label, std::to_string(t.configurations[i].runs.size()),
+                 mean.score().feasible ? "within" : "over", with_deviation(s.return_mean, s.return_sd),
+                 format("%.4g", s.return_iqm), interval_text(s.return_interval),
+                 s.group.empty() ? "-" : s.group,
+                 mean.costs.empty() ? "-" : with_deviation(mean.costs[0].mean, s.cost_sd[0])});
     }
     text += table.text() + '\n';
+  }
+  text +=
+      "+- is the deviation over seeds; runs that share a letter are not told apart by their returns (redman "
+      "compare --help)\n";
+  json["remarks"] = Json::array();
+  if (fewest < 5) {
+    const std::string remark = std::string(fewest < 2 ? "one run has no interval and no group; " : "") +
+                               "intervals of fewer than 5 runs are too narrow";
+    json["remarks"].push_back(remark);
+    text += remark + '\n';
   }
   replace_file(flags.html, report_page(reports));
   return {json, text + "wrote " + flags.html + '\n'};

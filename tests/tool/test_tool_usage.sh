@@ -82,7 +82,8 @@ json 'version abi ode eigen ccd octomap precision compiler' info
 json 'run policy env_steps wall_seconds steps_per_second return cost cost_stderr success_rate cost_limit feasible fall_rate length' \
   train --envs 4 --steps 200 --set max_steps=10 --out run
 json 'episodes return_mean return_std return_stderr cost_mean cost_std cost_stderr success_rate length_mean violation_rate fall_rate
-      cost_per_step' eval --policy run/policy.rdm --episodes 3
+      cost_per_step success_stderr return_iqm interval interval_level return_quantiles cost_interval cost_quantiles cost_cvar
+      cvar_share cost_over_rate remarks' eval --policy run/policy.rdm --episodes 3
 json 'episodes return_mean cost_mean length_mean fall_rate hash' rollout --policy random --set max_steps=5
 json 'file width height frames frames_per_second' render --step 2 --size 32x24 --out a.png
 json 'file width height frames frames_per_second' render --strip 3 --size 32x24 --out b.png --to 4
@@ -96,7 +97,8 @@ json 'horizon calls policy_act_us ticks ticks_per_update tick_us median p99 p99.
 json 'actions_per_second' bench act --obs 8 --act 2 --hidden 16,16 --seconds 0.01
 json 'file' plot run --out curve.svg
 json 'file frames' render --to 3 --glb c.glb
-json 'file runs ranking feasible' report run --episodes 2 --strip 0 --html report.html
+json 'file runs ranking feasible return_sd cost_sd return_iqm interval group normalised_return normalised_cost training_cost_rate
+      training_violating_steps remarks' report run --episodes 2 --strip 0 --html report.html
 for file in a.png b.png curve.svg c.glb report.html run/config.json run/progress.csv run/policy.rdm run/checkpoint.rdm; do
   [ -s "$file" ] || { echo "$file was not written"; failed=1; }
 done

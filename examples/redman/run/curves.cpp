@@ -51,7 +51,7 @@ Series curve_of(const std::vector<const RunData*>& runs, const std::string& colu
       n += 1;
     }
     const double mean = n > 0 ? sum / n : std::nan(""),
-                 std = std::sqrt(std::max(0.0, squares / n - mean * mean));
+                 std = std::sqrt(std::max(0.0, squares / n - mean * mean) * n / (n - 1));  // NaN of one
     s.x.push_back(x);
     s.y.push_back(mean);
     s.low.push_back(mean - std);

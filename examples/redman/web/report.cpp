@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 
 #include "common/report.hpp"
@@ -26,12 +27,10 @@ std::string short_text(double v) {
 // Mean and deviation of value(item): "12.3 &plusmn; 0.4".
 template <class Items, class Value>
 std::string spread(const Items& items, Value value) {
-  double sum = 0, squares = 0;
-  const auto n = static_cast<double>(items.size());
-  for (const auto& i : items) sum += value(i);
-  for (const auto& i : items) squares += std::pow(value(i) - sum / n, 2);
-  std::string out = short_text(sum / n);
-  if (items.size() > 1) out += format(" <small>&plusmn; %.2g</small>", std::sqrt(squares / n));
+  Sample values;
+  for (const auto& i : items) values.push_back(value(i));
+  std::string out = short_text(mean_of(values));
+  if (values.size() > 1) out += format(" <small>&plusmn; %.2g</small>", deviation_of(values));
   return out;
 }
 
@@ -53,7 +52,7 @@ std::string duration(double seconds) {
   return format("%.1f h", seconds / 3600);
 }
 
-std::string rank_row(const Configuration& c, size_t place) {
+std::string rank_row(const Configuration& c, const std::string& group) {
   const Outcome mean = c.mean();
   const auto good = static_cast<size_t>(std::count_if(c.outcomes.begin(), c.outcomes.end(),
                                                       [](const Outcome& o) { return o.score().feasible; }));
@@ -61,7 +60,7 @@ std::string rank_row(const Configuration& c, size_t place) {
   std::vector<TrainingEnd> ends;
   for (const RunData* run : c.runs) ends.push_back(training_end(*run));
   std::string out = feasible ? "<tr>" : "<tr class=\"over\">";
-  out += cell(std::to_string(place)) + cell(chip(c.color) + html_text(c.label), "name");
+  out += cell(group, "name") + cell(chip(c.color) + html_text(c.label), "name");
   out += cell(format("<b class=\"%s\">%s</b> <small>%zu of %zu</small>", feasible ? "yes" : "no",
                      feasible ? "within" : "over", good, c.runs.size()),
               "state");
@@ -95,11 +94,11 @@ std::string ranking(const TaskReport& t) {
     if (k == 0 || columns[k].limit >= 0) costs += "<th>" + html_text(columns[k].name) + " / limit</th>";
   std::string out =
       "<div class=\"wide\"><table "
-      "class=\"ranking\"><thead><tr><th></th><th>configuration</th><th>limits</th><th>return</th>" +
+      "class=\"ranking\"><thead><tr><th>group</th><th>configuration</th><th>limits</th><th>return</th>" +
       costs +
       "<th>success</th><th>falls</th><th>length</th><th>training, last tenth</th><th>epochs over</th>"
       "<th>steps</th><th>time</th></tr></thead><tbody>\n";
-  for (size_t i = 0; i < t.configurations.size(); ++i) out += rank_row(t.configurations[i], i + 1);
+  for (size_t i = 0; i < t.configurations.size(); ++i) out += rank_row(t.configurations[i], t.seeds[i].group);
   out += "</tbody></table></div>\n";
   const bool all = std::all_of(t.configurations.begin(), t.configurations.end(),
                                [](const Configuration& c) { return c.mean().evaluated; });
@@ -109,9 +108,55 @@ std::string ranking(const TaskReport& t) {
           : std::string(
                 "Means over the last tenth of training, exploration included, where a run was not evaluated");
   return out +
-         "; &plusmn; is the deviation over seeds. <q>2 of 3</q>: so many seeds are within. Training: return "
-         "@ "
-         "cost with exploration, and the share of epochs over a limit.</p>\n";
+         "; &plusmn; is the standard deviation over seeds. <q>2 of 3</q>: so many seeds are within. "
+         "Training: "
+         "return @ cost with exploration, and the share of epochs over a limit. Rows that share a letter are "
+         "not "
+         "told apart by their returns: the 95 % interval of the difference of their interquartile means "
+         "holds 0, "
+         "each pair for itself.</p>\n";
+}
+
+std::string number_or_dash(double v) {
+  return std::isfinite(v) ? short_text(v) : "&ndash;";
+}
+
+std::string seeds_table(const TaskReport& t) {
+  const std::vector<CostOutcome> columns = t.configurations[0].mean().costs;
+  const bool normalised = std::any_of(t.seeds.begin(), t.seeds.end(),
+                                      [](const Seeds& s) { return std::isfinite(s.normalised_return); });
+  std::string out =
+      "<h3>Over seeds</h3>\n<div class=\"wide\"><table><thead><tr><th>configuration</th><th>seeds</th>"
+      "<th>return</th><th>sd</th><th>IQM</th><th>95 % interval</th>";
+  if (normalised) out += "<th>of PPO&rsquo;s return</th>";
+  for (const CostOutcome& c : columns)
+    if (c.limit > 0) out += "<th>" + html_text(c.name) + " of its limit</th>";
+  out += "<th>cost per step, all training</th><th>violating steps, all training</th></tr></thead><tbody>\n";
+  size_t fewest = SIZE_MAX;
+  for (size_t i = 0; i < t.seeds.size(); ++i) {
+    const Seeds& s = t.seeds[i];
+    const Configuration& c = t.configurations[i];
+    fewest = std::min(fewest, c.runs.size());
+    out += "<tr>" + cell(chip(c.color) + html_text(c.label), "name") + cell(std::to_string(c.runs.size())) +
+           cell(short_text(s.return_mean)) + cell(number_or_dash(s.return_sd)) +
+           cell(short_text(s.return_iqm)) +
+           cell(s.return_interval.known() ? interval_text(s.return_interval) : "&ndash;");
+    if (normalised) out += cell(number_or_dash(s.normalised_return));
+    for (size_t k = 0; k < columns.size(); ++k)
+      if (columns[k].limit > 0)
+        out += cell(k < s.cost_ratio.size() ? number_or_dash(s.cost_ratio[k]) : "&ndash;");
+    out += cell(number_or_dash(s.training_cost_rate)) + cell(number_or_dash(s.training_violating_steps)) +
+           "</tr>\n";
+  }
+  out +=
+      "</tbody></table></div>\n<p class=\"hint\">IQM: the interquartile mean of the runs&rsquo; returns, "
+      "with the "
+      "interval of a bootstrap over runs";
+  if (fewest < 5) out += ", which is too narrow for fewer than 5 of them and is none for one";
+  return out +
+         ". Costs of training are column 0 with exploration, violating steps those in which it or a limited "
+         "cost "
+         "was above 0; &ndash;: not measured.</p>\n";
 }
 
 struct Chart {
@@ -285,7 +330,7 @@ std::string report_page(const std::vector<TaskReport>& tasks) {
     for (const Configuration& c : t.configurations) runs += c.runs.size();
     names += (names.empty() ? "" : ", ") + t.task;
     body += "<section>\n<h2>" + html_text(t.task) + " <small>" + html_text(t.summary) + "</small></h2>\n" +
-            ranking(t);
+            ranking(t) + seeds_table(t);
     for (const std::string& note : t.notes) body += "<p class=\"note\">" + html_text(note) + "</p>\n";
     body += strips(t) + "<h3>Learning curves</h3>\n" + curves(t, data) + differences_table(t) +
             runs_table(t) + common_settings(t) + "</section>\n";

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "run/comparison.hpp"
+#include "run/seeds.hpp"
 
 namespace tool {
 
@@ -17,6 +17,7 @@ struct TaskReport {
   std::string task, summary;
   int32_t episodes = 0;                       // that evaluated each run
   std::vector<Configuration> configurations;  // ranked
+  std::vector<Seeds> seeds;                   // of the configurations
   std::vector<Strip> strips;                  // of the configurations
   std::vector<std::string> notes;             // what could not be done
 };
