@@ -4,10 +4,8 @@
 . "$(dirname "$0")/root.sh"
 folder=$1 tool=$2
 block c README.md > build/hello.c
-python_page=README.md
-[ -n "$(block python README.md)" ] || python_page=capi/python/README.md
-block python "$python_page" > build/hello.py
-[ -s build/hello.py ] || die "no page has Python lines"
+block python README.md > build/hello.py
+[ -s build/hello.py ] || die "README.md has no Python lines"
 new_root deb "$folder"/*.deb build/hello.c build/hello.py -- /packages/*.deb gcc libc6-dev pkg-config man-db
 
 episode="rollout --task hand_over_safe_finger --policy hold --episodes 1 --seed 7 --out /tmp/steps.csv --json"

@@ -217,7 +217,10 @@ class Curves(unittest.TestCase):
 
 class Pages(unittest.TestCase):
     def test_what_the_pages_show_runs(self):
-        for page in ("README.md", "capi/python/README.md"):
+        manual = sorted(str(page.relative_to(TREE)) for page in (TREE / "examples/manual").glob("*.md")
+                        if "```python" in page.read_text(encoding="utf-8"))
+        self.assertIn("examples/manual/python.md", manual)
+        for page in ("README.md", "capi/python/README.md", *manual):
             blocks = re.findall(r"```python\n(.*?)```", (TREE / page).read_text(encoding="utf-8"), re.S)
             self.assertTrue(blocks, page)
             with tempfile.TemporaryDirectory() as folder:

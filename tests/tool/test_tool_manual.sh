@@ -1,0 +1,40 @@
+#!/bin/sh
+# test_tool_manual.sh TOOL: the command lines of README, the manual and the folders' pages name subcommands and flags that the tool has.
+set -u
+tool=$(realpath "$1")
+cd "$(dirname "$0")/../.." || exit 1
+helps=$(mktemp -d)
+trap 'rm -rf "$helps"' EXIT
+failed=0 commands=0
+# Lines of code, joined where a backslash ends them: the page, the subcommand (of bench its own too), the flags.
+awk '
+  FNR == 1 { code = 0 }
+  /^```/ { code = !code && /^```(sh)?$/; next }
+  code {
+    line = line $0
+    if (sub(/\\$/, "", line)) next
+    sub(/ #.*/, "", line)
+    if (match(line, /(^|[ (])(build\/[a-z]*\/bin\/|\$|\.\/)?redman +[a-z]+/)) {
+      text = substr(line, RSTART)
+      sub(/^[ (]*[^ ]* +/, "", text)
+      words = split(text, word, " ")
+      command = word[1]
+      if (command == "bench") command = command " " word[2]
+      flags = ""
+      for (i = 2; i <= words; i++) if (word[i] ~ /^--[a-z]/) { sub(/=.*/, "", word[i]); flags = flags " " word[i] }
+      print FILENAME "|" command "|" flags
+    }
+    line = ""
+  }' README.md examples/manual/*.md examples/demos/README.md examples/policies/README.md examples/scenes/README.md > "$helps/lines"
+while IFS='|' read -r page command flags; do
+  commands=$((commands + 1))
+  help="$helps/$(echo "$command" | tr ' ' _).help"
+  # shellcheck disable=SC2086
+  [ -e "$help" ] || "$tool" $command --help > "$help" 2> /dev/null || { echo "$page: redman has no command $command"; failed=1; continue; }
+  for flag in $flags; do
+    case $flag in --json | --plugin | --help) continue ;; esac
+    grep -qE -- "(^|[ ,])$flag([ ,=]|\$)" "$help" || { echo "$page: redman $command has no $flag"; failed=1; }
+  done
+done < "$helps/lines"
+[ $commands -ge 50 ] || { echo "only $commands command lines were found"; failed=1; }
+exit $failed
