@@ -6,9 +6,9 @@ tool=$1 version=$2 out=$3
 rm -rf "$out/man1"
 mkdir -p "$out/man1"
 
-# The words under "Subcommands:" of a help text.
+# The subcommands of a help text: words at the begin of a line, under the titles of their groups.
 children() {
-  awk '/^Subcommands:/ { on = 1; next } !/^ / { on = 0 } on && /^  [a-z]/ { print $1 }'
+  awk '/^[A-Z].*:$/ { on = !/^(Positionals|Example):/; next } !/^ / && NF { on = 0 } on && /^  [a-z]/ { print $1 }'
 }
 
 # page SUMMARY WORD...: the page of the subcommand of these words, and of those below it.

@@ -76,8 +76,8 @@ void add_baseline(CLI::App& app, Run& run) {
   auto flags = std::make_shared<BaselineFlags>();
   flags->pool.envs = kEvalEnvs;
   CLI::App* command = app.add_subcommand("baseline",
-                                         "Evaluate policies that learn nothing, demonstrations, and those "
-                                         "that come with the tool, on every task");
+                                         "Evaluate zero, hold, random, demonstrations and bundled policies "
+                                         "on every task");
   command->add_option("--task,--env-id", flags->tasks, "task; repeatable; default: all")
       ->allow_extra_args(false);
   command

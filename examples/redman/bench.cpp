@@ -60,10 +60,10 @@ void add_bench(CLI::App& app, Run& run) {
 
   auto policy = std::make_shared<SeeingFlags>();
   policy->pool.envs = 64;
-  command = bench->add_subcommand("policy", "What a policy that sees points costs, part by part");
+  command = bench->add_subcommand("policy", "Time of a policy that reads points, part by part");
   add_pool_flags(*command, policy->pool, "task");
   command->add_option("--algo", policy->agent.algo, "algorithm");
-  command->add_option("--modality", policy->modality, "what it sees: points");
+  command->add_option("--modality", policy->modality, "what it observes: points");
   command->add_option("--points", policy->points, "of a cloud")->check(CLI::Range(1, 16384));
   command->add_option("--encoder", policy->encoder, "widths of its layers, such as 64,128");
   command->add_option("--horizon", policy->horizon, "decisions of a world in an epoch")
@@ -81,8 +81,8 @@ void add_bench(CLI::App& app, Run& run) {
 
   auto latency = std::make_shared<LatencyFlags>();
   latency->pool.envs = 8;
-  command =
-      bench->add_subcommand("latency", "The longest that a control loop waits for an act, and for a slice");
+  command = bench->add_subcommand("latency",
+                                  "Latency of an act of a policy, and of an act with a slice of an update");
   add_pool_flags(*command, latency->pool, "task");
   command->add_option("--algo", latency->agent.algo, "algorithm");
   command->add_option("--calls", latency->calls, "acts of a policy")->check(positive);

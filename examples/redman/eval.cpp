@@ -122,8 +122,8 @@ void add_eval(CLI::App& app, Run& run) {
                                          "and 95% intervals, quantiles, and the mean of the worst tenth");
   command->add_option(
       "--policy", flags->policy,
-      "policy file, run folder, .demo file, trained, plan, demo, zero, hold or random; a run's task "
-      "options come with it");
+      "policy file, run folder, .demo file, trained, plan, demo, zero, hold or random; a run brings "
+      "its task options");
   CLI::Option* task =
       add_pool_flags(*command, flags->pool, "task, or its file (.task); default: the policy's");
   command->add_option("--episodes", flags->episodes, "episodes")->check(CLI::Range(1, kMostEpisodes));

@@ -96,7 +96,6 @@ std::string unknown_flag(const CLI::App& command, const std::vector<std::string>
 std::string usage_text(const CLI::App& app, const CLI::ParseError& error, const Arguments& arguments) {
   std::string text = error.what(), path = "redman";
   std::replace(text.begin(), text.end(), '\n', ' ');
-  if (arguments.words.empty()) return "a subcommand is needed; redman --help lists them";
   const CLI::App* command = &app;
   size_t depth = 0;
   for (; !command->get_subcommands().empty(); ++depth) {
@@ -126,6 +125,7 @@ void work(CLI::App& app, Run& run, const Arguments& arguments) {
   try {
     redman::check(rdm_check_abi(RDM_ABI, RDM_VERSION));
     load_plugins(arguments.plugins);
+    if (arguments.words.empty()) throw CLI::CallForHelp();
     std::locale::global(std::locale::classic());  // C's too: a plugin may have set another for its own texts
     app.parse(std::vector<std::string>(arguments.words.rbegin(), arguments.words.rend()));
     print_result(run(), arguments.json);
@@ -142,22 +142,44 @@ void work(CLI::App& app, Run& run, const Arguments& arguments) {
   }
 }
 
+// In the order of the help, by group.
 struct Command {
   const char* name;
   void (*add)(CLI::App&, Run&);
+  const char* group;
+  const char* example;
 };
+constexpr char kPlay[] = "Train and play", kLook[] = "Look", kLists[] = "Tasks, algorithms, robots, objects",
+               kFiles[] = "Files and this program";
 constexpr Command kCommands[] = {
-    {"tasks", add_tasks},       {"algos", add_algos},
-    {"robots", add_robots},     {"robot", add_robot},
-    {"objects", add_objects},   {"object", add_object},
-    {"train", add_train},       {"eval", add_eval},
-    {"baseline", add_baseline}, {"rollout", add_rollout},
-    {"plan", add_plan},         {"render", add_render},
-    {"bench", add_bench},       {"plot", add_plot},
-    {"report", add_report},     {"compare", add_compare},
-    {"export", add_export},     {"hull", add_hull},
-    {"info", add_info},         {"completion", add_completion},
+    {"train", add_train, kPlay, "redman train --task hand_over_safe_finger --steps 1e6 --out runs/first"},
+    {"eval", add_eval, kPlay, "redman eval --policy runs/first --episodes 100"},
+    {"rollout", add_rollout, kPlay, "redman rollout --policy runs/first --episodes 10 --record rollout.npz"},
+    {"plan", add_plan, kPlay, "redman plan --task hand_over_safe_finger --method cem --samples 128"},
+    {"baseline", add_baseline, kPlay, "redman baseline --task ball_run --policy hold --policy random"},
+    {"bench", add_bench, kPlay, "redman bench step --task hand_over_safe_finger --envs 64"},
+    {"render", add_render, kLook, "redman render --policy runs/first --html episode.html"},
+    {"plot", add_plot, kLook, "redman plot runs/first --out curve.svg"},
+    {"report", add_report, kLook, "redman report runs --html report.html"},
+    {"compare", add_compare, kLook, "redman compare examples/results/runs.csv --where part=command"},
+    {"tasks", add_tasks, kLists, "redman tasks hand_over_safe_finger"},
+    {"algos", add_algos, kLists, "redman algos ppo_lag"},
+    {"robots", add_robots, kLists, "redman robots"},
+    {"objects", add_objects, kLists, "redman objects"},
+    {"robot", add_robot, kLists, "redman robot hand.urdf --check --out hand.robot"},
+    {"object", add_object, kLists, "redman object mug.stl --scale 0.001 --mass 0.2 --out mug.object"},
+    {"hull", add_hull, kLists, "redman hull mug.stl --scale 0.001 --points 24"},
+    {"export", add_export, kFiles, "redman export --policy runs/first --c policy.c"},
+    {"info", add_info, kFiles, "redman info shield"},
+    {"completion", add_completion, kFiles, "source <(redman completion bash)"},
 };
+constexpr char kFooter[] =
+    "With --json, stdout is one JSON object on one line. Names: case is ignored, '-' equals '_'.";
+
+// An example above what every help ends with.
+std::string footer_of(const std::string& examples) {
+  return "Example:\n  " + examples + "\n\n" + kFooter;
+}
 
 // One that the first word names goes without the others: CLI11 takes most of a short command's time to note the
 // flags of all. A completion completes every command.
@@ -165,8 +187,14 @@ void add_commands(CLI::App& app, Run& run, const std::vector<std::string>& words
   const Command* asked = std::find_if(std::begin(kCommands), std::end(kCommands),
                                       [&](const Command& c) { return !words.empty() && words[0] == c.name; });
   const bool alone = asked != std::end(kCommands) && asked->add != add_completion;
-  for (const Command& c : kCommands)
-    if (!alone || &c == asked) c.add(app, run);
+  for (const Command& c : kCommands) {
+    if (alone && &c != asked) continue;
+    c.add(app, run);
+    CLI::App* command = app.get_subcommand(c.name);
+    command->group(c.group)->footer(footer_of(c.example));
+    for (CLI::App* below : command->get_subcommands([](CLI::App*) { return true; }))
+      below->footer(footer_of(std::string("redman ") + c.name + ' ' + below->get_name()));
+  }
 }
 
 int run_tool(int argc, char** argv) {
@@ -174,7 +202,11 @@ int run_tool(int argc, char** argv) {
   const bool json = arguments.json;
 
   CLI::App app("Safe dexterous manipulation: simulate, train, evaluate, look.", "redman");
-  app.footer("With --json, stdout is one JSON object on one line. Names: case is ignored, '-' equals '_'.");
+  app.footer(
+      footer_of("redman train --task hand_over_safe_finger --steps 1e6 --out runs/first\n"
+                "  redman eval --policy runs/first\n"
+                "  redman render --policy runs/first --html episode.html\n\n"
+                "redman COMMAND --help explains a command."));
   app.require_subcommand(1);
   app.option_defaults()->always_capture_default();
   Run run;

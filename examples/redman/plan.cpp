@@ -74,7 +74,7 @@ Report run_plan(PlanFlags flags) {
 void add_plan(CLI::App& app, Run& run) {
   auto flags = std::make_shared<PlanFlags>();
   CLI::App* command =
-      app.add_subcommand("plan", "Act by planning: roll many worlds out, take what went best");
+      app.add_subcommand("plan", "Act by planning: simulate many action sequences, follow the best");
   CLI::Option* task =
       add_pool_flags(*command, flags->pool, "task, or its file (.task); default: the policy's");
   command->add_option("--policy", flags->policy,

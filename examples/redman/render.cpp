@@ -173,7 +173,7 @@ Report run_render(RenderFlags flags) {
 void add_render(CLI::App& app, Run& run) {
   auto flags = std::make_shared<RenderFlags>();
   CLI::App* command =
-      app.add_subcommand("render", "Draw a moment, a strip of moments, a film or a playback of an episode");
+      app.add_subcommand("render", "Draw an episode: a picture, a strip, a film, or a page in 3D");
   CLI::Option* task =
       add_task_flag(*command, flags->pool.task, "--task", "task, or its file; default: the policy's");
   command->add_option("--policy", flags->policy,
@@ -181,7 +181,7 @@ void add_render(CLI::App& app, Run& run) {
   command->add_option("--seed", flags->pool.seed, "seed of the episode");
   CLI::Option* step =
       command->add_option("--step", flags->step, "control step to draw; 0: the start")->check(at_least(0));
-  command->add_option("--strip", flags->strip, "so many moments of the episode side by side")
+  command->add_option("--strip", flags->strip, "so many pictures of the episode side by side")
       ->check(CLI::Range(1, 64))
       ->excludes(step);
   command->add_option("--from", flags->from, "first step of the strip, the film and the playback")
@@ -200,7 +200,7 @@ void add_render(CLI::App& app, Run& run) {
   command->add_option("--video", flags->video,
                       "film of the episode, .mp4 or .gif, made by the program ffmpeg");
   command->add_option("--html", flags->html,
-                      "page with the episode in 3D, to turn, play and scrub, above its reward and costs");
+                      "page with the episode in 3D, to rotate, play and scrub, above its reward and costs");
   command->add_option("--glb", flags->glb, "the episode as binary glTF, an animation for 3D viewers");
   add_shield_flag(*command, flags->shield);
   add_set_flag(*command, flags->sets);

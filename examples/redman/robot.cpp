@@ -129,11 +129,7 @@ void add_robots(CLI::App& app, Run& run) {
 void add_robot(CLI::App& app, Run& run) {
   auto flags = std::make_shared<RobotFlags>();
   CLI::App* command = app.add_subcommand(
-      "robot",
-      "Read a robot's file (URDF, MJCF, .robot): what is taken, dropped, guessed. A joint without an end "
-      "gets "
-      "+-2 pi (rad; m for one that slides). What could change mass, pose, axis, range or coupling is read or "
-      "refused by name");
+      "robot", "Read a robot's file (URDF, MJCF, .robot), and list what is dropped, changed and guessed");
   ImportFlags& f = flags->import;
   command->add_option("file", flags->file, "file, or a robot's name")->required();
   command->add_flag("--check", flags->check, "try it alone: what touches, shakes or does not get there");

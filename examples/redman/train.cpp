@@ -302,40 +302,56 @@ std::vector<CLI::Option*> add_teach_flags(CLI::App& command, RunSettings& run, s
   return out;
 }
 
+// Titles of the flags that few runs need, in the help.
+constexpr char kRunGroup[] = "Run folder and processes";
+constexpr char kImitationGroup[] = "Imitation before learning";
+
 }  // namespace
 
 void add_train(CLI::App& app, Run& run) {
   auto flags = std::make_shared<TrainFlags>();
   RunSettings& r = flags->run;
   r.pool.envs = 64;
-  CLI::App* command = app.add_subcommand("train", "Train a policy into a run folder, or go on with one");
+  CLI::App* command = app.add_subcommand("train", "Train a policy into a run folder, or continue a run");
   std::vector<CLI::Option*> others = {
       add_task_flag(*command, r.pool.task, "--task,--env-id", "task, or its file (.task)"),
-      command->add_option("--algo", r.agent.algo, "algorithm"),
-      command->add_option("--envs,--num-envs", r.pool.envs, "worlds"),
-      command->add_option("--seed", r.pool.seed, "seed of worlds, weights and noise"),
-      command->add_option("--out", flags->out, "run folder; default runs/<algo>-{<task>}/seed-<n>-<time>"),
-      command->add_option("--eval-every", r.eval_every, "epochs between evaluations")->check(at_least(1)),
-      command->add_option("--checkpoint-every", r.checkpoint_every, "epochs between checkpoints")
-          ->check(at_least(1))};
-  CLI::Option* threads = command->add_option("--threads", r.pool.threads, "threads; 0: the caller's own");
-  command->add_option("--ranks", flags->ranks,
-                      "processes that learn together: N of this machine, or mpi under mpirun; sets blocks");
+      command->add_option("--algo", r.agent.algo, "algorithm")};
   CLI::Option* steps =
       command->add_option("--steps,--total-steps", flags->steps, "control steps, all worlds together");
-  add_cost_limit_flag(*command, r.limits);
+  others.push_back(
+      command->add_option("--out", flags->out, "run folder; default runs/<algo>-{<task>}/seed-<n>-<time>"));
   add_set_flag(*command, flags->sets);
+  add_cost_limit_flag(*command, r.limits);
+  others.push_back(command->add_option("--envs,--num-envs", r.pool.envs, "worlds"));
+  CLI::Option* threads = command->add_option("--threads", r.pool.threads, "threads; 0: the caller's own");
+  others.push_back(command->add_option("--seed", r.pool.seed, "seed of worlds, weights and noise"));
   others.push_back(add_shield_flag(*command, flags->shield));
+  command->add_option("--resume", flags->resume, "run folder to continue, from its last checkpoint");
+  others.push_back(command->add_option("--eval-every", r.eval_every, "epochs between evaluations")
+                       ->check(at_least(1))
+                       ->group(kRunGroup));
+  others.push_back(command->add_option("--checkpoint-every", r.checkpoint_every, "epochs between checkpoints")
+                       ->check(at_least(1))
+                       ->group(kRunGroup));
+  command
+      ->add_option("--ranks", flags->ranks,
+                   "processes that learn together: N of this machine, or mpi under mpirun; sets blocks")
+      ->group(kRunGroup);
   others.push_back(command->get_option("--cost-limit"));
   others.push_back(command->get_option("--set"));
-  others.push_back(command->add_flag(
-      "--no-tensorboard", [&r](int64_t) { r.events = false; }, "no event file of the curve for TensorBoard"));
+  others.push_back(command
+                       ->add_flag(
+                           "--no-tensorboard", [&r](int64_t) { r.events = false; },
+                           "no event file of the curve for TensorBoard")
+                       ->group(kRunGroup));
   others.push_back(
-      command->add_flag("--overwrite", flags->overwrite, "begin again in a folder that holds a run"));
+      command->add_flag("--overwrite", flags->overwrite, "begin again in a folder that holds a run")
+          ->group(kRunGroup));
   const std::vector<CLI::Option*> taught = add_teach_flags(*command, r, flags->start_share);
   others.push_back(command->get_option("--from"));
   others.insert(others.end(), taught.begin(), taught.end());
-  command->add_option("--resume", flags->resume, "run folder to go on with, from its last checkpoint");
+  for (CLI::Option* o : taught) o->group(kImitationGroup);
+  command->get_option("--from")->group(kImitationGroup);
   command->callback([&run, flags, threads, steps, others, taught] {
     flags->task_given = others.front()->count() > 0;
     for (const CLI::Option* o : taught)

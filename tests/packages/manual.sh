@@ -12,7 +12,7 @@ lacks() { echo "$*"; status=1; }
 # commands WORD...: the subcommand of these words and those below it, a line each, as their help lists them.
 commands() {
   echo "$*"
-  for child in $("$tool" "$@" --help | awk '/^Subcommands:/ { on = 1; next } !/^ / { on = 0 } on && /^  [a-z]/ { print $1 }'); do
+  for child in $("$tool" "$@" --help | awk '/^[A-Z].*:$/ { on = !/^(Positionals|Example):/; next } !/^ / && NF { on = 0 } on && /^  [a-z]/ { print $1 }'); do
     (commands "$@" "$child")
   done
 }

@@ -60,7 +60,7 @@ killed() { # which: first or another
   [ $left -eq 0 ] || { echo "processes are left behind"; failed=1; }
 }
 killed another
-grep -q 'go on with train --resume broken' err || { echo "no word of how to go on: $(cat err)"; failed=1; }
+grep -q 'continue with train --resume broken' err || { echo "no word of how to go on: $(cat err)"; failed=1; }
 killed first
 rows=$(wc -l < broken/progress.csv)
 steps=$(((rows + 40) * 128))

@@ -82,7 +82,7 @@ refused "another task" 'was recorded in task hand_over_safe_finger, not in grasp
 refused "other options" 'hold.npz does not fit' --policy hold.npz --set object=ball
 refused "too many episodes" 'has 4' --policy hold.npz --episodes 5
 refused "a seed" 'goes without a seed' --policy hold.npz --seed 5
-refused "states as text" 'no room for states' --policy zero --record states.csv --record-states
+refused "states as text" 'cannot hold states' --policy zero --record states.csv --record-states
 refused "no folder" 'cannot write none/x.npz' --policy zero --record none/x.npz
 "$tool" export --policy hold.npz --c x.c > out 2> err
 [ $? -eq 2 ] && grep -q 'no network' err || say "a recording was exported: $(cat err)"

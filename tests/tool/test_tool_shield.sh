@@ -76,7 +76,7 @@ refused 'words project and predict' eval --task hand_over_wall --shield predict:
 refused '--resume takes its settings from the folder' train --resume whole --shield off
 refused 'not shared among ranks' train --task bandit --ranks 2 --shield predict
 refused 'beyond its proof' rollout --task hand_over_wall --shield predict --noise 0.1
-refused 'sees points' train --task grasp --set encoder=8,8 --set encoder_points=16 --envs 2 --shield predict
+refused 'reads points' train --task grasp --set encoder=8,8 --set encoder_points=16 --envs 2 --shield predict
 check 'a refused run left its folder' test ! -d runs
 # what was played under a shield plays again without one, and not under another
 "$tool" rollout --task hand_over_wall --policy trained --seed 3 --shield predict --record played.npz > first || exit 1

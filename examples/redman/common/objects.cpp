@@ -110,7 +110,8 @@ void add_object_flag(CLI::App& command) {
           },
           "an object's file (.object, by redman object), for --set object=NAME; repeatable")
       ->allow_extra_args(false)
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->group(kOwnGroup);
 }
 
 }  // namespace tool

@@ -134,7 +134,8 @@ void add_robot_flag(CLI::App& command) {
           },
           "a robot's file (.robot, URDF, MJCF), for --set hand=NAME, arm=NAME; repeatable")
       ->allow_extra_args(false)
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->group(kOwnGroup);
 }
 
 }  // namespace tool

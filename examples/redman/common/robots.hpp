@@ -36,6 +36,9 @@ int32_t load_robot_text(const std::string& text, const std::string& where);
 // As a .robot file.
 std::string robot_text(const rdm_robot_def& def);
 
+// The title in the help of --robot and --object.
+constexpr char kOwnGroup[] = "Robots and objects of your own";
+
 // --robot FILE, repeatable: loads them while the command line is read, before any task is made.
 void add_robot_flag(CLI::App& command);
 

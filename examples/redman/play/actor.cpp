@@ -214,9 +214,9 @@ void Actor::prepare(const redman::Pool& pool, bool stochastic, uint64_t seed) {
     const rdm_sensors seen = redman::sensors(pool);
     if (!seen.points || seen.num_points != points)
       throw Failure(
-          format("the policy sees clouds of %d points: set modality=points and points=%d", points, points));
+          format("the policy reads clouds of %d points: set modality=points and points=%d", points, points));
     if (policy_->info().point_color && !seen.point_color)
-      throw Failure("the policy sees the colours of points: set point_color=true");
+      throw Failure("the policy reads the colours of points: set point_color=true");
     seen_ = redman::points(seen);
   }
   auto config = redman::actor_config(*policy_, pool);

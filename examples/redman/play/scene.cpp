@@ -15,7 +15,7 @@ namespace {
 rdm_camera_info cloud_camera(const redman::Pool& pool, const std::string& name) {
   if (!redman::sensors(pool).points)
     throw Usage(
-        "--cloud: these worlds make no clouds; give --set modality=points, or a policy that sees points");
+        "--cloud: these worlds make no clouds; give --set modality=points, or a policy that reads points");
   rdm_camera_info camera = RDM_INIT(rdm_camera_info);
   for (int32_t i = 0; rdm_pool_camera_at(pool.get(), i, &camera) == RDM_OK && !same_name(camera.name, name);)
     ++i;

@@ -50,9 +50,10 @@ CLI::Option* add_shield_flag(CLI::App& command, std::string& word) {
   return command
       .add_option(
           "--shield", word,
-          "what looks at every decision before it runs: off; project, to the nearest action within the "
-          "guards that the task declares; predict[:key=value,...], which tries it in a copy and lets it "
-          "through where no cost follows; `redman info shield` lists the keys")
+          "safety filter of every decision: off; project: the nearest action within the guards that the task "
+          "declares; predict[:key=value,...]: simulate it in a copy, and replace it where a cost would "
+          "follow "
+          "(`redman info shield` lists the keys)")
       ->type_name("WORD");
 }
 

@@ -48,8 +48,8 @@ std::string trouble_text(const Trouble& t) {
       " steps left contacts out (option contacts_max)");
   add(t.unconverged, " step did not solve its contacts (options iterations, substeps)",
       " steps did not solve their contacts (options iterations, substeps)");
-  add(t.slowed, " step slowed a thing that spun too fast (option substeps)",
-      " steps slowed things that spun too fast (option substeps)");
+  add(t.slowed, " step slowed a body that spun too fast (option substeps)",
+      " steps slowed bodies that spun too fast (option substeps)");
   return text;
 }
 

@@ -90,7 +90,7 @@ Recorder::Recorder(const std::string& path, const redman::Pool& pool, size_t epi
       scratch_(path),
       episodes_(episodes) {
   check_replaceable(path);
-  if (table_ && states) throw Usage("--record-states: a .csv file has no room for states; give an .npz file");
+  if (table_ && states) throw Usage("--record-states: a .csv file cannot hold states; give an .npz file");
   const size_t n = pool.num_envs();
   const rdm_buffers& b = pool.buffers();
   const auto obs = static_cast<uint64_t>(pool.spec().obs_dim),

@@ -144,7 +144,7 @@ std::string config_text(const RunSettings& s, const redman::Pool& pool, const re
   if (s.teach.asked() || s.teach.pretrain > 0) json["teach_cfgs"] = teach_json(s.teach);
   std::string text = json_text(json, 2) + '\n';
   if (text.size() > kMostJsonBytes)
-    throw Failure(format("a run's config.json has room for %zu bytes: its robots and task take %zu",
+    throw Failure(format("a run's config.json holds at most %zu bytes: its robots and task take %zu",
                          kMostJsonBytes, text.size()));
   return text;
 }

@@ -104,7 +104,7 @@ RunFolder RunFolder::create(const std::string& path, bool overwrite) {
   if (there != "config.json")
     throw Failure(path + " holds " + there +
                   " of another run: replace it with --overwrite, or give another --out");
-  throw Failure(path + " holds a run already: go on with --resume " + path +
+  throw Failure(path + " holds a run already: continue it with --resume " + path +
                 ", begin again with --overwrite, or give another --out");
 }
 

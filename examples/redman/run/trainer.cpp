@@ -98,7 +98,7 @@ void Trainer::add_shield() {
   const std::string flag = "--shield " + settings_.shield.word + ": ";
   if (ranks_) throw Usage(flag + "it is not shared among ranks; train without --ranks");
   if (settings_.shield.predicts && redman::Policy(agent_.policy()).info().num_points > 0)
-    throw Usage(flag + "the agent's encoder sees points, which copies of worlds do not have");
+    throw Usage(flag + "the agent's encoder reads points, which copies of worlds do not have");
   auto config = redman::shield_config(pool_);
   config.seed = settings_.pool.seed;
   config.steps = static_cast<int32_t>(option("action_repeat")) / pool_.spec().action_repeat;
@@ -217,7 +217,7 @@ void Trainer::restore(const std::string& path) {
     size_t size = 0;
     if (rdm_checkpoint_read(path.c_str(), agent_.get(), pool_.get(), bytes.data(), bytes.size(), &size) !=
         RDM_OK)
-      throw Failure("cannot go on from " + path + ": " + rdm_last_error());
+      throw Failure("cannot resume from " + path + ": " + rdm_last_error());
     return size;
   };
   bytes.resize(read());  // the first time asks for the length of the note
@@ -237,7 +237,7 @@ void Trainer::restore(const std::string& path) {
     best_ = note.best;
     best_policy_ = std::move(note.best_policy);
   } catch (const std::runtime_error& e) {
-    throw Failure("cannot go on from " + path + ": its note was not written by this tool: " + e.what());
+    throw Failure("cannot resume from " + path + ": its note was not written by this tool: " + e.what());
   }
 }
 
@@ -318,16 +318,17 @@ void Trainer::run() {
     if (saved_epoch_ < 1) throw;
     if (!file_exists(folder_->checkpoint()))
       throw Failure(std::string(e.what()) + "; " + folder_->checkpoint() +
-                    " was removed: there is nothing to go on from");
-    throw Failure(std::string(e.what()) +
-                  format("; the checkpoint of epoch %d is kept: go on with train --resume ", saved_epoch_) +
-                  folder_->path());
+                    " was removed: there is nothing to resume from");
+    throw Failure(
+        std::string(e.what()) +
+        format("; the checkpoint of epoch %d is kept: continue with train --resume ", saved_epoch_) +
+        folder_->path());
   }
   if (!first()) return;
   interrupted_ = env_steps_ < settings_.steps;
   if (interrupted_)
     meter.say(saved_epoch_ > 0
-                  ? format("stopped; the checkpoint is at epoch %d: go on with train --resume %s",
+                  ? format("stopped; the checkpoint is at epoch %d: continue with train --resume %s",
                            saved_epoch_, folder_->path().c_str())
                   : "stopped inside the first epoch: there is no checkpoint yet");
   finish();

@@ -141,7 +141,7 @@ rdm_pretrain_report pretrain(const TeachSettings& s, const PoolSettings& setting
   const bool taught = s.asked() && !is_file(s.from);
   Lesson lesson(s, own, choose_actor(taught ? s.from : "random", settings.task), repeat, own.seed);
   const rdm_sensors seen = redman::sensors(lesson.pool());
-  if (!seen.points) throw Usage("--pretrain: the agent sees no points: --set encoder=64,128");
+  if (!seen.points) throw Usage("--pretrain: the agent reads no points: --set encoder=64,128");
   redman::Recording shown(lesson.pool(), s.pretrain + settings.envs);
   RoundMeans means;
   while (shown.info().rows < s.pretrain) lesson.decide(shown, nullptr, 1, &means);
