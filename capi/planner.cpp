@@ -58,7 +58,7 @@ void use_policy(const rdm_policy* policy, const rdm_pool* pool, rdm_planner* p, 
   if (const rdm_result r = rdm_pool_get_spec(pool, &spec)) fail(static_cast<Code>(r), "%s", last_error());
   check_policy(policy->policy->view(), spec);
   if (policy->policy->view().eyes.points)
-    fail(Code::kUnsupported, "config.policy: it sees points, which plans are not tried out with");
+    fail(Code::kUnsupported, "config.policy: it reads points, which simulated plans do not have");
   p->proposals.open(p->hooks, policy->policy, 1);
   config->policy = &p->proposals;
 }

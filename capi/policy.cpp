@@ -252,7 +252,7 @@ void need_rows(int32_t rows) {
 // Of one that sees no points.
 void need_blind(const Policy& policy) {
   if (policy.view().eyes.points)
-    fail(Code::kState, "policy: it sees points, which come with rdm_policy_act_points");
+    fail(Code::kState, "policy: it reads points, which rdm_policy_act_points takes");
 }
 
 // run(scratch) writes the rows that are not NULL, action and mean, which are looked at then.
@@ -324,7 +324,7 @@ rdm_result rdm_policy_act_points(const rdm_policy* p, const float* obs, const rd
     need(obs, "obs");
     need_rows(rows);
     const PointNetShape& eyes = p->policy->view().eyes;
-    if (!eyes.points) fail(Code::kState, "policy: it sees no points");
+    if (!eyes.points) fail(Code::kState, "policy: it reads no points");
     const PointRows clouds = read_points(points, eyes);
     need_finite(clouds.metres, rows, 3 * eyes.points, "points");
     need_channels(eyes, clouds, static_cast<size_t>(rows));
@@ -392,7 +392,7 @@ PointRows rdm::capi::read_points(const rdm_points* points, const PointNetShape& 
   const auto in = read_struct(points, kFirstPointsSize, rdm_points{}, "points");
   need(in.points, "points.points");
   if (in.num_points != eyes.points)
-    fail(Code::kRange, "points.num_points: %d, the encoder sees %d", in.num_points, eyes.points);
+    fail(Code::kRange, "points.num_points: %d, the encoder reads %d", in.num_points, eyes.points);
   PointRows clouds;
   clouds.metres = in.points;
   clouds.classes = eyes.classes ? in.point_class : nullptr;

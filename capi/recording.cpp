@@ -368,7 +368,7 @@ PointRows demo_clouds(const Recording& x, const PointNetShape& eyes, Vector<int1
   const RecordingRows v = x.view();
   if (!eyes.points || !v.points) return out;
   if (x.spec().num_points != eyes.points)
-    fail(Code::kArgument, "recording: its clouds have %d points, the agent's encoder sees %d",
+    fail(Code::kArgument, "recording: its clouds have %d points, the agent's encoder reads %d",
          x.spec().num_points, eyes.points);
   int32_t origin[3];
   for (int k = 0; k < 3; ++k)

@@ -175,14 +175,14 @@ PointRows clouds_of(const Agent& agent, const Pool& pool) {
   if (!clouds.metres)
     fail(Code::kState, "pool: it has no points for the agent's encoder: option modality=points");
   if (pool.sense().num_points != eyes.points)
-    fail(Code::kArgument, "encoder_points: the agent's encoder sees %d, the pool has %d", eyes.points,
+    fail(Code::kArgument, "encoder_points: the agent's encoder reads %d, the pool has %d", eyes.points,
          pool.sense().num_points);
   if (eyes.color && !pool.sensed().point_color)
     fail(Code::kState, "pool: its points have no colours for the agent's encoder: option point_color");
   if (eyes.color) clouds.colors = pool.sensed().point_color;
   if (!eyes.classes) return clouds;
   if (const int32_t count = point_classes(pool.sense(), pool.task().scene()); count > eyes.classes)
-    fail(Code::kArgument, "encoder_classes: the pool's points have %d classes, the agent's encoder sees %d",
+    fail(Code::kArgument, "encoder_classes: the pool's points have %d classes, the agent's encoder reads %d",
          count, eyes.classes);
   clouds.classes = pool.sensed().point_class;
   return clouds;

@@ -34,7 +34,7 @@ void add_policy(rdm_shield* s, const rdm_policy* policy) {
   const int32_t steps = s->shield->steps(), held = held_steps(policy, s->spec.action_repeat);
   check_policy(policy->policy->view(), s->spec);
   if (policy->policy->view().eyes.points)
-    fail(Code::kUnsupported, "policy: it sees points, which copies do not have");
+    fail(Code::kUnsupported, "policy: it reads points, which copies do not have");
   if (held != steps)
     fail(Code::kArgument, "policy: it holds an action for %d steps of the pool, a decision is %d", held,
          steps);

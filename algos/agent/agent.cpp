@@ -187,10 +187,10 @@ void Agent::need_clouds(const DemoRows& demo) const {
   if (!demo.clouds.points)
     fail(Code::kArgument, "recording: without points, which the agent's encoder needs");
   if (resolved_.eyes.classes && !demo.clouds.classes)
-    fail(Code::kArgument, "recording: its points have no classes, the encoder sees %d",
+    fail(Code::kArgument, "recording: its points have no classes, the encoder reads %d",
          resolved_.eyes.classes);
   if (resolved_.eyes.color && !demo.clouds.colors)
-    fail(Code::kArgument, "recording: its points have no colours, which the encoder sees");
+    fail(Code::kArgument, "recording: its points have no colours, which the encoder reads");
 }
 
 CloneReport Agent::clone(const DemoRows& demo, const CloneOptions& how) {

@@ -30,10 +30,10 @@ inline constexpr auto kSharedRows = [] {
           number_option("last_layer_scale", 0.01, 0, 100, "factor on the actor's initial last layer")),
       row<&S::actor_obs>(basic(text_option(
           "actor_obs", "*", nullptr,
-          "what the actor sees: fields by commas, '*', !less; or state, vision, touch, proprioception",
+          "what the actor observes: fields by commas, '*', !less; or state, vision, touch, proprioception",
           kLongestObs))),
       row<&S::critic_obs>(
-          text_option("critic_obs", "*", nullptr, "what the critics see, in the same words", kLongestObs)),
+          text_option("critic_obs", "*", nullptr, "what the critics observe, in the same form", kLongestObs)),
       // seeing
       row<&S::encoder>(basic(text_option(
           "encoder", "", nullptr,
@@ -44,8 +44,8 @@ inline constexpr auto kSharedRows = [] {
                                           "it does not learn; its features are computed once, when acting")),
       row<&S::encoder_points>(integer_option("encoder_points", 512, 1, 16384, "points of each cloud")),
       row<&S::encoder_classes>(integer_option(
-          "encoder_classes", 0, 0, 64, "classes of points, which it sees beside coordinates; 0: none")),
-      row<&S::encoder_color>(flag_option("encoder_color", false, "it sees the colours of points")),
+          "encoder_classes", 0, 0, 64, "classes of points, which it reads beside coordinates; 0: none")),
+      row<&S::encoder_color>(flag_option("encoder_color", false, "it reads the colours of points")),
       row<&S::encoder_origin>(
           text_option("encoder_origin", "0,0,0", nullptr, "x,y,z in the world, m: where points are 0 to it")),
       row<&S::encoder_range>(
@@ -71,10 +71,10 @@ inline constexpr auto kSharedRows = [] {
       row<&S::average>(number_option(
           "average", 0, 0, 0.9999,
           "share of its past in the actor's mean over epochs, which policy files hold; 0: none")),
-      row<&S::shield_learn, ShieldLearn::kOwn, ShieldLearn::kApplied, ShieldLearn::kCost,
-          ShieldLearn::kEnd>(text_option(
-          "shield_learn", "own", "own|applied|cost|end",
-          "a refused action teaches: own, applied (what ran), cost (of column 0) or end (of the episode)")),
+      row<&S::shield_learn, ShieldLearn::kOwn, ShieldLearn::kApplied, ShieldLearn::kCost, ShieldLearn::kEnd>(
+          text_option("shield_learn", "own", "own|applied|cost|end",
+                      "learn from a refused action: own, applied (what ran), cost (of column 0) or end (of "
+                      "the episode)")),
       row<&S::shield_penalty>(
           number_option("shield_penalty", 0, 0, 1e6, "what a refused decision takes from the reward")),
       row<&S::normalize_obs>(basic(flag_option(

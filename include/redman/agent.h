@@ -99,9 +99,9 @@ typedef struct rdm_transition { /* what followed the last sampled actions; a row
  * count; its cost counts, and an end in it ends the episode. Its steps count too, but in a row that
  * neither ends an episode nor follows another row of one: that is what next-step autoreset returns
  * for the step that only resets. An episode that is not over after max_steps control steps counts
- * as one there (RDM_EPOCH_CUT): its sums are closed and begin anew. The path goes on, so the value
- * of the next observation follows, as after a truncation. Option episode_steps sets that length,
- * cost_limit_per_step a limit on the cost per control step, which needs no ends. */
+ * as one there (RDM_EPOCH_CUT): its sums are closed and begin anew. The path continues, so the
+ * value of the next observation follows, as after a truncation. Option episode_steps sets that
+ * length, cost_limit_per_step a limit on the cost per control step, which needs no ends. */
 RDM_API rdm_result rdm_agent_record(rdm_agent *a, const rdm_transition *t);
 /* A decision that was taken elsewhere, by a robot or another process: obs [num_envs][obs_dim],
  * action [num_envs][action_dim] as the policy of this epoch sampled it, not clipped
@@ -109,9 +109,9 @@ RDM_API rdm_result rdm_agent_record(rdm_agent *a, const rdm_transition *t);
  * rdm_agent_record stand, the two may take turns, and its log-probability and values are computed
  * here: an agent of the same config and seed learns the same from it as one that acted, but the
  * streams of noise stay where they are. Rows of one environment are one path, in their order; with
- * option noise_correlation its noise is taken to go on from decision to decision. Option
- * normalize_obs goes on counting with each row, as in rdm_agent_act, while a policy file stands
- * still: obs_freeze ends that.
+ * option noise_correlation its noise is taken to continue from decision to decision. Option
+ * normalize_obs keeps counting with each row, as in rdm_agent_act, while a policy file does not
+ * change: obs_freeze ends that.
  * STATE as for rdm_agent_act, and for a generation that is not the agent's: its data are stale.
  * RANGE for an action beyond +-1e5, ARGUMENT as for rdm_agent_record; then nothing has changed.
  * UNSUPPORTED for an agent with option encoder, and for a generation where option average is on: a
@@ -186,7 +186,7 @@ typedef struct rdm_epoch {
  * CANCELLED after rdm_agent_cancel: the horizon is dropped, full or not, and the policy is as
  * before. STATE when the horizon is not full. */
 RDM_API rdm_result rdm_agent_update(rdm_agent *a, const float *last_obs, rdm_epoch *io);
-/* The same in slices, for who may not wait: a robot at 1 kHz.
+/* The same in slices, for a control loop that must not wait: a robot at 1 kHz.
  *   rdm_agent_update_begin(agent, obs);
  *   for (int32_t done = 0; !done;) {
  *     wait_for_tick(obs);
@@ -220,8 +220,8 @@ RDM_API rdm_result rdm_agent_rollout(rdm_agent *a, rdm_pool *p, rdm_epoch *io);
  * update or first act with RDM_ACT_SAMPLE returns CANCELLED, before anything is collected. */
 RDM_API void rdm_agent_cancel(rdm_agent *a);
 /* Drops the horizon that has begun, an update in slices, and a cancel that waits: from any state
- * back to between epochs. The policy learns nothing from what it drops. Episodes that run go on,
- * with what was recorded of them. */
+ * back to between epochs. The policy learns nothing from what it drops. Running episodes
+ * continue, with what was recorded of them. */
 RDM_API rdm_result rdm_agent_discard(rdm_agent *a);
 /* Changes a live option. NOT_FOUND, RANGE, or STATE when it is not live. */
 RDM_API rdm_result rdm_agent_set_option(rdm_agent *a, const rdm_option *option);
@@ -251,7 +251,7 @@ RDM_API rdm_result rdm_agent_write_policy_file(const rdm_agent *a,
                                                const char *path); /* replaced atomically */
 /* The agent's network and statistics as they are now, into a policy of the same sizes, without
  * memory: afterwards p is what rdm_agent_write_policy writes, but for the names of its fields.
- * ARGUMENT names what differs, in network, entries that it sees, normaliser, layout_hash or
+ * ARGUMENT names what differs, in network, entries that it reads, normaliser, layout_hash or
  * action_repeat, and p is as it was. Nobody else may be in a call with p, nor an actor or planner
  * that plays it: a rdm_policy_act meanwhile is STATE. */
 RDM_API rdm_result rdm_policy_update_from(rdm_policy *p, const rdm_agent *a);

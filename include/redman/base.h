@@ -78,9 +78,10 @@ RDM_API uint32_t rdm_version(void);  /* RDM_VERSION of the library that runs */
 RDM_API uint32_t rdm_features(void); /* RDM_FEATURE_*: what this build has */
 /* VERSION_MISMATCH unless the library has this ABI and at least this version. */
 RDM_API rdm_result rdm_check_abi(uint32_t abi, uint32_t version);
-/* For who calls experimental functions: VERSION_MISMATCH unless major and minor of `version`, the
- * header's RDM_VERSION, are the library's. With ELF's symbol versions the loader has looked; who
- * finds functions by name at run time, or runs where symbols have no versions, asks here. */
+/* For programs that call experimental functions: VERSION_MISMATCH unless major and minor of
+ * `version`, the header's RDM_VERSION, are the library's. With ELF's symbol versions the loader has
+ * checked it; a program that finds functions by name at run time, or that runs where symbols have
+ * no versions, asks here. */
 RDM_API rdm_result rdm_check_experimental(uint32_t version);
 typedef struct rdm_build { /* what this library was made of */
   uint32_t struct_size;   /* in: bytes                                              */

@@ -48,7 +48,7 @@ typedef struct rdm_joint {  /* frozen layout */
   int32_t action;           /* entry of the hand's action, -1: none                           */
   int32_t reserved;         /* 0                                                              */
 } rdm_joint;
-typedef struct rdm_object { /* frozen layout: a thing by name, for option object=... */
+typedef struct rdm_object { /* frozen layout: an object by name, for option object=... */
   const char *name;         /* "egg"                                                          */
   const char *shape;        /* "capsule r 0.03, straight part 0.02": kind and sizes in m      */
   double mass;              /* kg; hull: of the default points, 500 kg/m3                     */

@@ -70,7 +70,7 @@ RDM_API rdm_result rdm_map_clear(rdm_map *m);               /* all is unknown ag
  * ends, else down where rays pass. Points that are not finite are left out, and those nearer to the
  * origin than a voxel's side: a depth of 0 says that nothing was seen. A full map grows no more:
  * the call returns OK, *dropped (may be NULL) says how many voxels were left out, and voxels that
- * exist go on being updated. */
+ * exist are still updated. */
 RDM_API rdm_result rdm_map_insert(rdm_map *m, const float origin[3], const float *points,
                                   size_t count, uint64_t *dropped);
 /* One scan by a camera of the pool's task: depths of w x h rays of world env. Rays that end on one

@@ -44,7 +44,7 @@ typedef struct rdm_object_def { /* a whole object; rdm_object_create copies it w
   double moment[6];        /* xx yy zz xy xz yz, kg m2, the frame's origin then is the centre of
                             * mass; all 0: of the shapes, solid, of one density; where two
                             * overlap, both count */
-  double friction;         /* coefficient of its surface on dry things, 0 to 10; default 0.5 */
+  double friction;         /* friction coefficient, on dry surfaces, 0 to 10; default 0.5 */
 } rdm_object_def;
 RDM_API rdm_result rdm_object_def_init(rdm_object_def *def,
                                        size_t size); /* defaults into the first `size` bytes */

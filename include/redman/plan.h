@@ -60,9 +60,9 @@ RDM_API const char *rdm_actor_error(const rdm_actor *actor); /* last failure on 
                                                               * at first */
 /* action [num_envs][action_dim] for one step of the worlds whose mask [num_envs] is not 0 (NULL:
  * all): a new decision on obs [num_envs][obs_dim] where one is due, else the one that is held; rows
- * of other worlds are not written. points: clouds of the worlds for a policy that sees points, NULL
- * for others. No heap. ARGUMENT for rows that are not finite where a decision is due: nothing is
- * counted then. */
+ * of other worlds are not written. points: clouds of the worlds for a policy that reads points,
+ * NULL for others. No heap. ARGUMENT for rows that are not finite where a decision is due: nothing
+ * is counted then. */
 RDM_API rdm_result rdm_actor_act(rdm_actor *actor, const float *obs, const rdm_points *points,
                                  const uint8_t *mask, float *action);
 /* Episodes begin anew where terminated [num_envs] or truncated [num_envs] is not 0: a decision is
@@ -71,7 +71,7 @@ RDM_API rdm_result rdm_actor_act(rdm_actor *actor, const float *obs, const rdm_p
 RDM_API rdm_result rdm_actor_reset(rdm_actor *actor, const uint8_t *terminated,
                                    const uint8_t *truncated);
 /* Held actions, counts and noise as bytes [capacity]; NULL asks for the size. An actor of the same
- * policy and config that reads them goes on with the same bytes. */
+ * policy and config that reads them continues with the same bytes. */
 RDM_API rdm_result rdm_actor_write_state(const rdm_actor *actor, void *bytes, size_t capacity,
                                          size_t *size);
 /* Of bytes [size]. FORMAT for bytes that are not whole, or of another actor: nothing changes. */
@@ -183,8 +183,8 @@ RDM_API rdm_result rdm_planner_act(rdm_planner *planner, const rdm_pool *pool, i
 /* Async-signal-safe, from any thread: the running rdm_planner_act returns CANCELLED before the next
  * step of its rollouts, or else the next one does. NULL is fine. */
 RDM_API void rdm_planner_cancel(rdm_planner *planner);
-/* Forgets the plan; the noise goes on. The next plan begins at rdm_pool_get_initial_mean, or the
- * policy's rollout. */
+/* Forgets the plan; the stream of noise continues. The next plan begins at
+ * rdm_pool_get_initial_mean, or the policy's rollout. */
 RDM_API rdm_result rdm_planner_reset(rdm_planner *planner);
 /* The plan as it is to plan [horizon][action_dim]: row 0 is the action that rdm_planner_act
  * gave. */
@@ -193,7 +193,7 @@ RDM_API rdm_result rdm_planner_get_plan(const rdm_planner *planner, float *plan)
  * entries that are not finite. With a policy it is tried as sample 1. */
 RDM_API rdm_result rdm_planner_set_plan(rdm_planner *planner, const float *plan);
 /* Plan, noise and counters as bytes [capacity]; NULL asks for the size. A planner of the same task,
- * options, noise and limits that reads them goes on with the same bytes. */
+ * options, noise and limits that reads them continues with the same bytes. */
 RDM_API rdm_result rdm_planner_write_state(const rdm_planner *planner, void *bytes, size_t capacity,
                                            size_t *size);
 /* Of bytes [size]. FORMAT for bytes that are not whole, or of another planner: nothing changes. */

@@ -31,7 +31,7 @@ class Actor {
   explicit Actor(const rdm_actor_config& config) : handle_(made(rdm_actor_create, &config)) {}
   rdm_actor* get() const { return handle_.get(); }
   // action [num_envs][action_dim] of worlds in the mask (null: all), new ones on
-  // obs [num_envs][obs_dim] where they are due; seen: clouds of a policy that sees points.
+  // obs [num_envs][obs_dim] where they are due; seen: clouds, of a policy that reads points.
   void act(const float* obs, float* action, const uint8_t* mask = nullptr,
            const rdm_points* seen = nullptr) {
     check(rdm_actor_act(get(), obs, seen, mask, action));

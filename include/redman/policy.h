@@ -20,10 +20,10 @@ typedef struct rdm_policy_info { /* what a policy file tells of its network */
   const char *task;           /* "" for a host's own environment */
   const char *activation;     /* of the hidden layers: "tanh", "elu", "relu"; static */
   int32_t num_points;         /* of the cloud beside each row, for rdm_policy_act_points; 0: it
-                               * sees none */
+                               * reads none */
   int32_t num_point_classes;  /* that it tells points apart by, 0: none */
   int32_t num_features;       /* that its encoder makes of a cloud, 0 without */
-  int32_t point_color;        /* whether it sees the colours of points: 0, 1 */
+  int32_t point_color;        /* whether it reads the colours of points: 0, 1 */
   int32_t num_fields;         /* for rdm_policy_field_at; 0: the file says none */
   int32_t novelty;            /* whether rdm_policy_novelty tells: 0, 1 */
   uint64_t generation;        /* which network: the low 32 bits are the epochs that its agent had
@@ -34,7 +34,7 @@ RDM_API rdm_result rdm_policy_read(rdm_policy **out, const void *bytes,
                                    size_t size); /* copies bytes [size] */
 RDM_API rdm_result rdm_policy_read_file(rdm_policy **out,
                                         const char *path); /* NOT_FOUND, FORMAT ... */
-/* For who has no heap: how many bytes rdm_policy_read_in needs for the policy file bytes [size].
+/* For programs without a heap: the bytes that rdm_policy_read_in needs for the file bytes [size].
  * Errors as of rdm_policy_read, but for a network that does not give the file's example. */
 RDM_API rdm_result rdm_policy_read_memory(const void *bytes, size_t size, size_t *memory);
 /* As rdm_policy_read of bytes [size], which may go at once, into memory [capacity] at any address,
@@ -54,7 +54,7 @@ RDM_API size_t rdm_policy_scratch(const rdm_policy *p, int32_t rows); /* bytes f
  * scratch [scratch_bytes]: rdm_policy_scratch bytes or more, aligned in any way. No heap, no hidden
  * state: any number of threads, each with its own scratch. ARGUMENT when obs or noise is not
  * finite, or so large that the network overflows (action is written then, and of no use). STATE for
- * a policy that sees points. */
+ * a policy that reads points. */
 RDM_API rdm_result rdm_policy_act(const rdm_policy *p, const float *obs, int32_t rows,
                                   const float *noise, float *action, void *scratch,
                                   size_t scratch_bytes);
@@ -67,7 +67,7 @@ RDM_API rdm_result rdm_policy_sample(const rdm_policy *p, const float *obs, int3
                                      void *scratch, size_t scratch_bytes);
 /* How far rows are from those that the policy learned on: novelty [rows] of obs [rows][obs_dim].
  *
- *   z_j = (x_j - mean_j) / deviation_j, of the m entries x of a row that the policy sees
+ *   z_j = (x_j - mean_j) / deviation_j, of the m entries x of a row that the policy reads
  *   novelty = max(sqrt(sum of z_j^2 / m) / a, max of |z_j| / b)
  *
  * mean and deviation are the normaliser's, of all rows in training (with options obs_freeze and
@@ -83,7 +83,7 @@ RDM_API rdm_result rdm_policy_novelty(const rdm_policy *p, const float *obs, int
                                       float *novelty);
 /* "actor.0.weight" of rows outputs and cols inputs, "actor.log_std" or "actor.log_std_bounds",
  * "normalizer.shift|scale|clip", "example.obs|action". RANGE ends the list. All are over whole rows
- * of obs_dim: a weight of an entry that the policy does not see is 0. Of one that sees points
+ * of obs_dim: a weight of an entry that the policy does not read is 0. Of one that reads points
  * "actor.0.weight" has a column for each feature behind those, and there are "encoder.0.weight" and
  * so on, "encoder.origin" and "encoder.range", in m, "encoder.activation" (0 tanh, 1 elu, 2 relu),
  * "example.points", in m, and "example.point_class". */
@@ -97,7 +97,7 @@ RDM_API rdm_result rdm_policy_field_at(const rdm_policy *p, int32_t i, rdm_field
  * another layout, the first part that differs, if the policy says its parts and a pool of the
  * spec's layout lives. */
 RDM_API rdm_result rdm_policy_check(const rdm_policy *p, const rdm_spec *spec);
-/* Which entries of a row of obs_dim the policy sees (agent option actor_obs), ascending: writes up
+/* Which entries of a row of obs_dim the policy reads (agent option actor_obs), ascending: writes up
  * to capacity of them to columns [capacity]; *count is how many there are. */
 RDM_API rdm_result rdm_policy_get_columns(const rdm_policy *p, int32_t *columns, size_t capacity,
                                           size_t *count);

@@ -21,7 +21,7 @@ class Policy {
            size_t scratch_bytes) const {
     check(rdm_policy_act(get(), obs, rows, noise, action, scratch, scratch_bytes));
   }
-  // The same with scratch from the heap, for who does not count calls.
+  // The same with scratch memory from the heap.
   void act(const float* obs, int32_t rows, const float* noise, float* action) const {
     Bytes scratch(scratch_bytes(rows));
     act(obs, rows, noise, action, scratch.data(), scratch.size());

@@ -91,7 +91,7 @@ typedef struct rdm_joint_info { /* a joint of a robot, a scene or a pool's world
 RDM_API rdm_result rdm_robot_joint_at(int32_t robot, int32_t i,
                                       rdm_joint_info *io); /* i < num_joints; RANGE past the end */
 
-typedef struct rdm_object_info { /* a thing by name, for option object=... */
+typedef struct rdm_object_info { /* an object by name, for option object=... */
   uint32_t struct_size;     /* in: bytes                                                      */
   int32_t kind;             /* RDM_SHAPE_* of its only shape; -1: it has several              */
   int32_t num_shapes;       /* count                                                          */
@@ -101,7 +101,7 @@ typedef struct rdm_object_info { /* a thing by name, for option object=... */
   const char *summary;      /* one line, may be ""                                            */
   const char *shape;        /* "capsule r 0.03, straight part 0.02": kind and sizes in m      */
   double mass;              /* kg; hull: of the default points, 500 kg/m3                     */
-  double friction;          /* coefficient of its surface on dry things                       */
+  double friction;          /* friction coefficient, on dry surfaces                          */
   double low[3];            /* m, lowest corner of the box around what can be touched of it, from
                              * its centre of mass, along the axes of its description          */
   double high[3];           /* m, highest corner of it                                        */
@@ -128,7 +128,7 @@ enum rdm_status {                  /* bits of rdm_buffers.status */
   RDM_STATUS_SOLVER = 16,          /* contacts were not solved, not seen in engine ode: one was
                                     * wrong by more than 1 m/s along its normal when the sweeps
                                     * ended (much under something heavier, with few iterations),
-                                    * or gave way for ever (a contact_max_speed below 0.02 m/s) */
+                                    * or gave way without end (contact_max_speed below 0.02 m/s) */
   RDM_STATUS_SLOWED = 32           /* a free body that turned by more than 3 rad in a substep was
                                     * slowed to that */
 };
@@ -171,7 +171,7 @@ RDM_API rdm_result rdm_pool_create(rdm_pool **out, const rdm_pool_config *c);
  * caller's all the time: at least `ours` of rdm_pool_config_memory. Fewer are RANGE, and the text
  * says how many are needed. Neither alloc hook nor C library are asked for memory, then and later,
  * but by the physics engine, and by the system for threads; what rdm_pool_set_starts keeps must
- * have room in what is left (MEMORY). */
+ * fit into what is left (MEMORY). */
 RDM_API rdm_result rdm_pool_create_in(rdm_pool **out, const rdm_pool_config *c, void *memory,
                                       size_t bytes);
 RDM_API void rdm_pool_destroy(rdm_pool *p);                 /* NULL is fine */
@@ -223,7 +223,7 @@ RDM_API rdm_result rdm_pool_set_buffers(rdm_pool *p, const rdm_buffers *b);
 
 /* Starts new episodes where mask [num_envs] is not 0 (NULL: everywhere). seeds [num_envs] name new
  * streams: the seed alone, whatever the world's number, so that seed s gives what a pool of one
- * world created with seed s has. NULL: go on with the worlds' own, which after create is
+ * world created with seed s has. NULL: continue the worlds' own, which after create is
  * (config.seed, i). Costs are 0 afterwards. An entry of the first observation that is not finite is
  * written as 0, and the world is flagged RDM_STATUS_DIVERGED, its episode with it. Where a host's
  * own task fails: its error, for the lowest such world; these are flagged RDM_STATUS_TASK and stand
@@ -246,12 +246,13 @@ enum rdm_baseline_kind { RDM_BASELINE_ZERO = 0, RDM_BASELINE_HOLD = 1, RDM_BASEL
  * uniform in [-1, 1] from the stream (seed, world, policy). */
 RDM_API rdm_result rdm_pool_baseline(rdm_pool *p, int32_t kind);
 
-/* The whole state of world env, exact: a pool of the same task and options that sets it goes on
- * with the same bytes. read_state also rewrites obs and clears the other rows of that world. env
- * -1: all worlds in one block. FORMAT for bytes that are not whole, of another task or options, or
- * hold what no world can have: nothing changes. Bytes are for files and other processes. Snapshots
- * within one, as for going back some steps, are cheap by rdm_pool_copy, with a second pool whose
- * worlds are the ring: a thirtieth of writing and reading again, in a task of hands. */
+/* The whole state of world env, exact: a pool of the same task and options that sets it
+ * continues with the same bytes. read_state also rewrites obs and clears the other rows of that
+ * world. env -1: all worlds in one block. FORMAT for bytes that are not whole, of another task or
+ * options, or hold what no world can have: nothing changes. Bytes are for files and other
+ * processes. Snapshots within one, as for going back some steps, are cheap by rdm_pool_copy, with a
+ * second pool whose worlds are the ring: a thirtieth of writing and reading again, in a task of
+ * hands. */
 RDM_API rdm_result rdm_pool_write_state(const rdm_pool *p, int32_t env, void *bytes,
                                         size_t capacity, size_t *size); /* to bytes [capacity];
                                                                          * NULL asks for the
@@ -282,8 +283,8 @@ typedef struct rdm_contact { /* frozen layout: one contact point of the last sub
   float force[3];            /* N, on a */
   float depth;               /* m */
 } rdm_contact;
-/* Writes up to capacity contacts to out [capacity], of things asleep as they fell asleep; *count is
- * how many there are. */
+/* Writes up to capacity contacts to out [capacity], of sleeping bodies as they were when they fell
+ * asleep; *count is how many there are. */
 RDM_API rdm_result rdm_pool_get_contacts(const rdm_pool *p, int32_t env, rdm_contact *out,
                                          size_t capacity, size_t *count);
 /* A picture of world env. camera: a name of the task's. rgb [h][w][3], depth [h][w] (m along the
@@ -312,8 +313,8 @@ typedef struct rdm_pool_stats { /* counts since create */
 } rdm_pool_stats;
 RDM_API rdm_result rdm_pool_get_stats(const rdm_pool *p, rdm_pool_stats *io); /* fills io */
 /* World dst_env of dst (-1: all of them) becomes what world src_env of src is, at the price of
- * copying memory: afterwards it goes on with the bytes that read_state(write_state) would give, and
- * its rows (but action, and those of rdm_sensors) are the other's. Pools of the same task and
+ * copying memory: afterwards it continues with the bytes that read_state(write_state) would give,
+ * and its rows (but action, and those of rdm_sensors) are the other's. Pools of the same task and
  * options, of any sizes, threads and seeds; src may be dst. ARGUMENT for pools that differ, RANGE
  * for worlds that are not there: nothing changes. No heap. */
 RDM_API rdm_result rdm_pool_copy(rdm_pool *dst, int32_t dst_env, const rdm_pool *src,

@@ -23,8 +23,8 @@ extern "C" {
  * calls of rollout, act with RDM_ACT_SAMPLE, record, put, update, save with memory,
  * rdm_checkpoint_write: these exchange messages, in one order. Each cuts its updates into slices as
  * it likes, which wait for the others' where they exchange; what ends one is rdm_agent_cancel.
- * Loading exchanges nothing: each takes its own part. A state that was saved by some ranks goes on
- * with any other number that `blocks` allows.
+ * Loading exchanges nothing: each takes its own part. A state that was saved by some ranks
+ * continues with any other number that `blocks` allows.
  *   - CANCELLED: a hook failed (a rank is gone), or rdm_agent_cancel was called on one rank, which
  *     stops all of them at one place. The handles are good; after a failed hook, what ranks have
  *     learned may differ: load a state that was saved.

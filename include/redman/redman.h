@@ -16,7 +16,7 @@
  *
  * Rules that hold for every function:
  *   - Fallible functions return rdm_result: 0 is good, negative is bad; nothing else is written
- *     then, unless said. They never print, exit, abort or throw. The text of a failure is
+ *     then, unless noted. They never print, exit, abort or throw. The text of a failure is
  *     rdm_last_error() of the calling thread, for calls on a pool or an agent also
  *     rdm_pool_error(p) or rdm_agent_error(a) (where a call takes both: the agent's), and names the
  *     argument and its range.
@@ -32,8 +32,8 @@
  *     handle while a call is within does nothing either, and the log hook of the handle is told:
  *     destroy it once more afterwards.
  *   - fork: in the child, handles with threads of their own (num_threads above 1 and no parallel
- *     hook) answer STATE to what needs those, and can be destroyed; all others go on as in the
- *     parent.
+ *     hook) answer STATE to what needs those, and can be destroyed; all others continue as
+ *     in the parent.
  *   - A handle of another kind, or one that was destroyed and whose memory has not been used since,
  *     is an ARGUMENT; to destroy such a one does nothing.
  *   - Structs begin with struct_size = sizeof of your version: set it yourself or through the _init
@@ -44,8 +44,8 @@
  *     were made; what it took is free again. To see all, look at 0 to _count() - 1 and pass over
  *     NOT_FOUND.
  *   - Strings that are returned live as long as their handle (those of tasks, algorithms, robots
- *     and objects: for ever, also where these are destroyed; equal ones are kept once). UTF-8; what
- *     is no UTF-8 in a given name is printed as \xNN.
+ *     and objects: as long as the process, also where these are destroyed; equal ones are kept
+ *     once). UTF-8; what is no UTF-8 in a given name is printed as \xNN.
  *   - Arrays are row-major. SI units, radians. Quaternions are (x, y, z, w) here and in
  *     observations.
  *   - Same seed, same bytes: for any number of threads; worlds on every little-endian machine whose
@@ -81,8 +81,8 @@
  *     `rdm_scene *` and `rdm_world *` are handles, through `**` new ones. `void *` with a shape is
  *     bytes; other ones are passed through.
  *   - Text and bytes of any length come as (T *x, size_t capacity, size_t *size): x NULL asks for
- *     the size alone, a capacity below it is RANGE. The size of a text is without its 0, for which
- *     the capacity must have room.
+ *     the size alone, a capacity below it is RANGE. The size of a text is without its 0, which the
+ *     capacity must count.
  * / */
 #ifndef REDMAN_H
 #define REDMAN_H
@@ -95,9 +95,9 @@
 /* What may change in any minor release. #define RDM_EXPERIMENTAL before the #include to see it, in
  * a file that has seen the rest before, too; to include one of these by its name is enough. */
 #if defined(RDM_EXPERIMENTAL)
-#include <redman/sense.h>  /* what worlds see, and who sees points                       */
+#include <redman/sense.h>  /* what worlds observe, and policies that read points         */
 #include <redman/map.h>    /* what is occupied, free and unknown in space                */
-#include <redman/plan.h>   /* actors and planners: who chooses actions without learning  */
+#include <redman/plan.h>   /* actors and planners, which choose actions without learning */
 #include <redman/shield.h> /* under which no cost exceeds its budget                     */
 #include <redman/record.h> /* trajectories as data, and what is learned from them        */
 #include <redman/ranks.h>  /* one learner of many processes                              */

@@ -130,7 +130,7 @@ typedef struct rdm_robot_def { /* a whole robot; the arrays are copied by rdm_ro
   double palm_normal[3];   /* unit: out of the palm */
   double palm_fingers[3];  /* unit: the way the fingers point; of a gripper any in the palm's
                             * plane */
-  double hold_p[3];        /* where a thing is that the hand holds, in palm_link's frame, m */
+  double hold_p[3];        /* where a held object is, in palm_link's frame, m */
 } rdm_robot_def;
 RDM_API rdm_result rdm_robot_def_init(rdm_robot_def *def,
                                       size_t size); /* defaults into the first `size` bytes */

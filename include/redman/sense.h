@@ -1,4 +1,4 @@
-/* redman/sense.h: what worlds see, and who sees points. Experimental. */
+/* redman/sense.h: what worlds observe, and policies that read points. Experimental. */
 #ifndef REDMAN_SENSE_H
 #define REDMAN_SENSE_H
 #include <redman/agent.h>
@@ -74,9 +74,9 @@ RDM_API rdm_result rdm_sample_furthest(const float *points, size_t count, size_t
 RDM_API size_t rdm_sample_scratch(size_t count); /* bytes, at any address; 0: count is outside
                                                   * [1, 2^22] */
 
-/* ---- eyes: agents and policies that see points ----------------------------------------------- */
+/* ---- encoders: agents and policies that read points ------------------------------------------ */
 /* With the agent option `encoder` ("64,128") a PointNet makes features of a cloud for the actor,
- * beside the entries of the row that it sees (actor_obs, "vision": nothing of an object); critics
+ * beside the entries of the row that it reads (actor_obs, "vision": nothing of an object); critics
  * see rows alone. Of rdm_sensors:
  *
  *   rdm_points seen = {.struct_size = sizeof seen, .num_points = s.num_points, .points = s.points};
@@ -129,10 +129,10 @@ typedef struct rdm_pretrain_report { /* what rdm_agent_pretrain did */
   double validation_loss;     /* likewise, of the clouds held back; 0 without */
   double accuracy;            /* share of points of these that are told right; of all clouds
                                * without */
-  double most_common;         /* share that whoever always says the commonest label tells right */
+  double most_common;         /* share that always saying the most common label gets right */
 } rdm_pretrain_report;
 /* The agent's encoder learns to tell the points of clouds [rows] apart by label [rows][num_points],
- * each less than num_labels: a head sees a point's last hidden layer and the cloud's features, and
+ * each less than num_labels: a head reads a point's last hidden layer and the cloud's features, and
  * is thrown away afterwards. Nothing else changes. Same seed, same bytes, for any number of
  * threads. STATE inside a horizon or without an encoder; CANCELLED after rdm_agent_cancel: the
  * encoder as before. io may be NULL. */

@@ -48,7 +48,7 @@ inline void act(const Policy& policy, const float* obs, const rdm_points& seen, 
   check(
       rdm_policy_act_points(policy.get(), obs, &seen, rows, noise, action, scratch, scratch_bytes));
 }
-// The same with scratch from the heap, for who does not count calls.
+// The same with scratch memory from the heap.
 inline void act(const Policy& policy, const float* obs, const rdm_points& seen, int32_t rows,
                 const float* noise, float* action) {
   Bytes scratch(policy.scratch_bytes(rows));

@@ -38,7 +38,7 @@ RDM_API rdm_result rdm_project(const float *normals, const float *bounds, size_t
 /* A shield stands between who proposes actions and a pool. What is proposed first goes to the
  * nearest action that keeps the guards: the pool's of each cost whose budget is 0, unless option
  * project is false, and the host's own. That goes through only where an exact copy of the world,
- * going on by a known plan, keeps within the budget of every cost until the episode ends; else
+ * continued by a known plan, keeps within the budget of every cost until the episode ends; else
  * another action takes its place. The rest of a plan is a plan again, so what holds for the first
  * decision of an episode holds for all of them: no cost exceeds its budget, whatever is proposed.
  * With option predict=false guards alone are kept: no copies are made, and costs that have none may
@@ -57,9 +57,10 @@ RDM_API rdm_result rdm_project(const float *normals, const float *bounds, size_t
  *
  * How it finds a way. The proposed action is tried in a copy, and behind it the first backup until
  * the episode ends. Where that meets a cost, each backup is tried from the present state, and noisy
- * actions before the first backup. Backups are policies (their mean actions), action 0 and the
- * hold action for ever. Where nothing is clean the plan that was made before goes on. An agent's
- * rollout (rdm_agent_set_shield) asks for blocks of decisions at once, which costs an eleventh.
+ * actions before the first backup. Backups are policies (their mean actions), constant
+ * action 0 and the constant hold action. Where nothing is clean the previous plan continues. An
+ * agent's rollout (rdm_agent_set_shield) asks for blocks of decisions at once, which costs an
+ * eleventh.
  *
  * What it cannot see. An exact copy knows what its world has drawn and will draw: where a robot is
  * real, the proof is one for the model. With option copies=K each way is tried in K copies, which
@@ -112,7 +113,7 @@ typedef struct rdm_shield_row { /* what was done in a world's last decision, and
                               * not, or the copy diverged; of what was projected: of the guard that
                               * it broke most, -1: the host's own */
   int32_t ahead;             /* control steps until that, 0: nothing was refused */
-  int32_t backup;            /* that the plan goes on by: a policy's number, then zero, then hold,
+  int32_t backup;            /* that the plan continues by: a policy's number, then zero, then hold,
                               * of those that it has; -1: no other way was looked for */
   int32_t planned;           /* decisions that its plan still has, with the one to come next */
 } rdm_shield_row;
@@ -136,7 +137,7 @@ RDM_API rdm_result rdm_shield_config_init(rdm_shield_config *c, size_t size);
 RDM_API rdm_result rdm_shield_create(rdm_shield **out, const rdm_shield_config *c);
 /* One backup more, behind the policies that it has: its mean actions. It must outlive the shield.
  * VERSION_MISMATCH for one that does not fit the pool, ARGUMENT for one that holds its actions for
- * another time than a decision and with predict=false, UNSUPPORTED for one that sees points, RANGE
+ * another time than a decision and with predict=false, UNSUPPORTED for one that reads points, RANGE
  * from the seventh on or where option tries is too small. Plans stay. */
 RDM_API rdm_result rdm_shield_add_policy(rdm_shield *shield, const rdm_policy *policy);
 /* One guard more, the host's own, of all worlds: normal [action_dim] . action <= bound, copied.
@@ -189,8 +190,8 @@ RDM_API rdm_result rdm_shield_get_stats(const rdm_shield *shield, rdm_shield_sta
 /* Forgets the plans of the worlds whose mask [num_envs] is not 0; NULL: all. */
 RDM_API rdm_result rdm_shield_reset(rdm_shield *shield, const uint8_t *mask);
 /* Plans, noise, counts and the host's guards as bytes [capacity]; NULL asks for the size. A shield
- * of the same config with as many guards that reads them goes on with the same bytes, beside a pool
- * that was set to the state of that moment. */
+ * of the same config with as many guards that reads them continues with the same bytes, beside a
+ * pool that was set to the state of that moment. */
 RDM_API rdm_result rdm_shield_write_state(const rdm_shield *shield, void *bytes, size_t capacity,
                                           size_t *size);
 /* Of bytes [size]. FORMAT for bytes that are not whole, or of another shield: nothing changes. */

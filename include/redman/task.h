@@ -28,15 +28,15 @@ extern "C" {
  *
  * What the functions promise, and rdm_task_check tries:
  *   - What happens follows from the options, the world, its state and the random numbers that are
- *     given, alone: threads call them for many worlds at a time, and a world that was saved goes on
- *     elsewhere. Contacts and touches are those of the step just made, and no part of a saved
- *     world: they are for judge and observe.
+ *     given, alone: threads call them for many worlds at a time, and a world that was saved
+ *     continues elsewhere. Contacts and touches are those of the step just made, and no part of a
+ *     saved world: they are for judge and observe.
  *   - `build` may be called more often than pools are made (to ask for sizes).
  *   - State and instance are plain bytes, zeroed before reset and build. No pointers in a state.
  *   - No memory is left behind by a step; nothing is kept of a pointer after the call.
  *   - They return RDM_OK, or an error. One of build is that of making the pool. One of control,
  *     judge or observe ends the episode of its world: truncated, RDM_STATUS_TASK, reward and cost 0
- *     in that step; the other worlds go on and the step returns RDM_OK. rdm_pool_world_error has
+ *     in that step; the other worlds continue and the step returns RDM_OK. rdm_pool_world_error has
  *     the text of the call that failed in them, or of rdm_fail. A reset that fails within a step
  *     flags the world too, which shows the end that it had until one succeeds in a later step, with
  *     the draws that follow; one within rdm_pool_reset is that call's error.
@@ -107,7 +107,7 @@ typedef struct rdm_contact_law { /* how two materials meet beside their friction
                             * default: the softer the more it rubs, and sliding lifts */
   double restitution;      /* 0 to 1: share of the speed at which a hard contact closed, above
                             * 0.05 m/s, that it parts with */
-  double torsional;        /* m, 0 to 10: turning about the normal is opposed by at most this
+  double torsional;        /* m, 0 to 10: rotation about the normal is opposed by at most this
                             * times the normal force */
   double rolling;          /* m, 0 to 10: rolling likewise */
   double time_constant;    /* s, to 10: a spring and damper, as MuJoCo's solref; 0: hard. At
@@ -121,8 +121,8 @@ RDM_API rdm_result rdm_contact_law_init(rdm_contact_law *law,
                                         size_t size); /* defaults into the first `size` bytes */
 enum rdm_friction { RDM_FRICTION_PASSES = -1 }; /* in the place of a coefficient */
 /* What is added gets the next number. A friction is that of two materials, or of one with itself; 1
- * unless said; RDM_FRICTION_PASSES: they go through each other. Gravity [3] is in the place of the
- * option's. The texts of errors name the thing; all is STATE after the first find, touch or joint.
+ * unless set; RDM_FRICTION_PASSES: they go through each other. Gravity [3] is in the place of the
+ * option's. The texts of errors name the part; all is STATE after the first find, touch or joint.
  * A scene that could not be completed there, or in the end, stays so: all later calls on it, and
  * what `build` is called for, have that error. A robot that is neither `own` nor given by number is
  * an ARGUMENT. */
@@ -131,8 +131,8 @@ RDM_API rdm_result rdm_scene_add_material(rdm_scene *scene,
 RDM_API rdm_result rdm_scene_set_friction(rdm_scene *scene, const char *a, const char *b,
                                           double mu); /* 0 or more */
 /* RANGE, ARGUMENT: the text names the field. Making the pool is UNSUPPORTED with engine=ode where a
- * law has more than a restitution. Fingertips feel the forces of such contacts, not the torques of
- * turning. */
+ * law has more than a restitution. Fingertips feel the forces of such contacts, not their
+ * torsional torques. */
 RDM_API rdm_result rdm_scene_set_contact_law(rdm_scene *scene, const char *a, const char *b,
                                              const rdm_contact_law *law);
 RDM_API rdm_result rdm_scene_set_gravity(rdm_scene *scene, const double gravity[3]); /* m/s2 */
@@ -210,15 +210,15 @@ RDM_API rdm_result rdm_world_get_sensor(const rdm_world *world, int32_t sensor, 
  * group's contact forces in its last substep. Either may be NULL. */
 RDM_API rdm_result rdm_world_get_touch(const rdm_world *world, int32_t group, int32_t *pairs,
                                        double *force);
-/* Contacts of the last substep to out [capacity], of things asleep as they fell asleep; *count is
- * how many there are. */
+/* Contacts of the last substep to out [capacity], of sleeping bodies as they were when they fell
+ * asleep; *count is how many there are. */
 RDM_API rdm_result rdm_world_get_contacts(const rdm_world *world, rdm_contact *out,
                                           size_t capacity, size_t *count);
 /* By *depth (m) a body at its present place is within something that it may touch; 0: it is
  * clear. */
 RDM_API rdm_result rdm_world_get_overlap(rdm_world *world, int32_t body, double *depth);
-/* Places for what moves freely; joints q [n] and rates qd [n] (NULL: 0) of a robot of n joints,
- * within their ranges, and with them the targets of its drives. */
+/* Places for what moves freely; joints q [n] and velocities qd [n] (NULL: 0) of a robot of n
+ * joints, within their ranges, and with them the targets of its drives. */
 RDM_API rdm_result rdm_world_set_body(rdm_world *world, int32_t body, const rdm_motion *motion);
 RDM_API rdm_result rdm_world_set_base(rdm_world *world, int32_t robot,
                                       const rdm_motion *motion); /* STATE: it is fixed */
@@ -253,7 +253,7 @@ enum rdm_scale { /* what a factor is on, and in brackets its bounds */
 };
 typedef struct rdm_factor { /* frozen layout: on a constant of the scene, in one world */
   int32_t what;            /* RDM_SCALE_* */
-  int32_t index;           /* of the thing */
+  int32_t index;           /* of the link, robot or body, or the first material */
   int32_t other;           /* the second material of a friction */
   int32_t reserved;        /* 0 */
   double factor;           /* times the scene's value */

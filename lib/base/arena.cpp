@@ -32,7 +32,7 @@ void* Arena::take(size_t bytes) {
   used_ += padded(bytes);
   if (!block_) return nullptr;
   if (used_ > capacity_)
-    fail(Code::kInternal, "arena of %zu bytes asked for %zu: measured and carved sizes differ", capacity_,
+    fail(Code::kInternal, "arena of %zu bytes asked for %zu: measured and allocated sizes differ", capacity_,
          used_);
   return block_ + at;
 }

@@ -155,9 +155,10 @@ void see_points(const PointNetShape& shape, const PointRows& clouds, size_t row,
 }
 
 void need_channels(const PointNetShape& s, const PointRows& clouds, size_t rows) {
-  if (s.color && !clouds.colors) fail(Code::kArgument, "point_color: NULL, but the encoder sees colours");
+  if (s.color && !clouds.colors) fail(Code::kArgument, "point_color: NULL, but the encoder reads colours");
   if (s.classes == 0) return;
-  if (!clouds.classes) fail(Code::kArgument, "point_class: NULL, but the encoder sees %d classes", s.classes);
+  if (!clouds.classes)
+    fail(Code::kArgument, "point_class: NULL, but the encoder reads %d classes", s.classes);
   const size_t count = sz(s.points);
   for (size_t i = 0; i < rows * count; ++i)
     if (clouds.classes[i] >= s.classes)

@@ -20,8 +20,8 @@ constexpr auto kRows = option_rows<ShieldOptions>(
     row<&ShieldOptions::block>(basic(integer_option(
         "block", 16, 1, kMostBlock, "decisions that are asked for at once, where they can be foreseen"))),
     row<&ShieldOptions::look>(basic(integer_option("look", 0, 0, kMostLook,
-                                                   "decisions of the backup that are looked at; 0: to the "
-                                                   "episode's end, the only ones that prove anything"))),
+                                                   "decisions of the backup that are simulated; 0: to the "
+                                                   "episode's end, without which nothing is proven"))),
     row<&ShieldOptions::tries>(
         integer_option("tries", 8, 1, kMostTries, "branches that are tried together for a world")),
     row<&ShieldOptions::rounds>(
@@ -35,8 +35,8 @@ constexpr auto kRows = option_rows<ShieldOptions>(
         text_option("choose", "latest", "latest|best",
                     "of clean branches: the first one, which leaves most as it was; or, of all that were "
                     "tried, the one with the highest return"))),
-    row<&ShieldOptions::zero>(flag_option("zero", true, "action 0 for ever is a backup")),
-    row<&ShieldOptions::hold>(flag_option("hold", true, "the hold action for ever is a backup")),
+    row<&ShieldOptions::zero>(flag_option("zero", true, "constant action 0 is a backup")),
+    row<&ShieldOptions::hold>(flag_option("hold", true, "the constant hold action is a backup")),
     row<&ShieldOptions::least, false, true>(
         basic(text_option("unproven", "error", "error|least",
                           "a world in which nothing is clean: an error, or what exceeds budgets least"))),
@@ -149,7 +149,8 @@ void Shield::end_copies() {
 
 void Shield::need_tries(int32_t backups) const {
   if (backups + 1 > set_.tries)
-    fail(Code::kRange, "tries: %d are fewer than the backups, %d with who proposes", set_.tries, backups + 1);
+    fail(Code::kRange, "tries: %d are fewer than the backups, %d with the proposing policy", set_.tries,
+         backups + 1);
 }
 
 void Shield::add_policy(MeanPolicy* policy) {

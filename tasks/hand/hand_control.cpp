@@ -28,9 +28,10 @@ constexpr auto kRows = option_rows<HandOptions>(
         "how far from the start an arm's joint goes with an entry of 1, rad; 0: its whole range")),
     row<&HandOptions::arm_noise>(
         number_option("arm_noise", 0, 0, 1, "half width of the draw of an arm's joints at a reset, rad")),
-    row<&HandOptions::arm_gravity, ArmGravity::kCompensated, ArmGravity::kFree, ArmGravity::kOff>(text_option(
-        "arm_gravity", "compensated", "compensated|free|off",
-        "of arms: gravity held by feed-forward, left to the drives, or (the paper's) none; hands feel none")),
+    row<&HandOptions::arm_gravity, ArmGravity::kCompensated, ArmGravity::kFree, ArmGravity::kOff>(
+        text_option("arm_gravity", "compensated", "compensated|free|off",
+                    "of arms: with gravity compensation, left to the drives, or (the paper's) no gravity; "
+                    "hands feel none")),
     row<&HandOptions::friction_object>(levelled(
         basic(number_option("friction.hand_object", 1, 0, 10, "friction coefficient of hands and object")))),
     row<&HandOptions::friction_self>(

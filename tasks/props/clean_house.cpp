@@ -136,8 +136,8 @@ constexpr auto kRows = option_rows<CleanOptions>(
         number_option("friction.trash_floor", 0.3, 0, 10, "friction coefficient of trash and floor"))),
     row<&CleanOptions::chair_floor>(drawable(
         number_option("friction.chair_floor", 0.3, 0, 10, "friction coefficient of chair and floor"))),
-    row<&CleanOptions::other>(drawable(
-        number_option("friction.other", 0.5, 0, 10, "friction coefficient of all other pairs of things"))));
+    row<&CleanOptions::other>(
+        drawable(number_option("friction.other", 0.5, 0, 10, "friction coefficient of all other pairs"))));
 
 void add_options(OptionTable& table) {
   table.add(kRows);

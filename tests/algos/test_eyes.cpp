@@ -319,7 +319,7 @@ TEST(Eyes, ErrorsNameTheArgument) {
   EXPECT_EQ(act(*a, {}).text, "act: the agent's encoder needs points");
   PointRows plain = world.clouds();
   plain.classes = nullptr;
-  EXPECT_EQ(act(*a, plain).text, "point_class: NULL, but the encoder sees 2 classes");
+  EXPECT_EQ(act(*a, plain).text, "point_class: NULL, but the encoder reads 2 classes");
   world.point_class[3 * kWorldPoints] = 2;
   EXPECT_EQ(act(*a, world.clouds()).text, "point_class: row 3 has class 2, outside [0, 2)");
   world.point_class[3 * kWorldPoints] = 1;

@@ -121,7 +121,7 @@ class Status(enum.IntFlag):
     DIVERGED = 2  # a value was not finite: the episode was truncated
     BAD_ACTION = 4  # the row of actions was not finite: likewise
     TASK = 8  # a function of a host's own task failed: likewise
-    SOLVER = 16  # contacts were not solved, not seen in engine ode: one was wrong by more than 1 m/s along its normal when the sweeps ended (much under something heavier, with few iterations), or gave way for ever (a contact_max_speed below 0.02 m/s)
+    SOLVER = 16  # contacts were not solved, not seen in engine ode: one was wrong by more than 1 m/s along its normal when the sweeps ended (much under something heavier, with few iterations), or gave way without end (contact_max_speed below 0.02 m/s)
     SLOWED = 32  # a free body that turned by more than 3 rad in a substep was slowed to that
 
 
@@ -587,10 +587,10 @@ class PolicyInfo(Record):
     num_params: int  # of the network
     task: str  # "" for a host's own environment
     activation: str  # of the hidden layers: "tanh", "elu", "relu"; static
-    num_points: int  # of the cloud beside each row, for rdm_policy_act_points; 0: it sees none
+    num_points: int  # of the cloud beside each row, for rdm_policy_act_points; 0: it reads none
     num_point_classes: int  # that it tells points apart by, 0: none
     num_features: int  # that its encoder makes of a cloud, 0 without
-    point_color: int  # whether it sees the colours of points: 0, 1
+    point_color: int  # whether it reads the colours of points: 0, 1
     num_fields: int  # for rdm_policy_field_at; 0: the file says none
     novelty: int  # whether rdm_policy_novelty tells: 0, 1
     generation: int  # which network: the low 32 bits are the epochs that its agent had learned, the high ones a checksum of it; what was sampled by another one is stale. 0: unknown
@@ -607,10 +607,10 @@ class rdm_policy_info(Structure):
     num_params: of the network
     task: "" for a host's own environment
     activation: of the hidden layers: "tanh", "elu", "relu"; static
-    num_points: of the cloud beside each row, for rdm_policy_act_points; 0: it sees none
+    num_points: of the cloud beside each row, for rdm_policy_act_points; 0: it reads none
     num_point_classes: that it tells points apart by, 0: none
     num_features: that its encoder makes of a cloud, 0 without
-    point_color: whether it sees the colours of points: 0, 1
+    point_color: whether it reads the colours of points: 0, 1
     num_fields: for rdm_policy_field_at; 0: the file says none
     novelty: whether rdm_policy_novelty tells: 0, 1
     generation: which network: the low 32 bits are the epochs that its agent had learned, the high ones a
@@ -893,7 +893,7 @@ class ObjectInfo(Record):
     summary: str  # one line, may be ""
     shape: str  # "capsule r 0.03, straight part 0.02": kind and sizes in m
     mass: float  # kg; hull: of the default points, 500 kg/m3
-    friction: float  # coefficient of its surface on dry things
+    friction: float  # friction coefficient, on dry surfaces
     low: tuple[float, ...]  # m, lowest corner of the box around what can be touched of it, from its centre of mass, along the axes of its description
     high: tuple[float, ...]  # m, highest corner of it
 
@@ -908,7 +908,7 @@ class rdm_object_info(Structure):
     summary: one line, may be ""
     shape: "capsule r 0.03, straight part 0.02": kind and sizes in m
     mass: kg; hull: of the default points, 500 kg/m3
-    friction: coefficient of its surface on dry things
+    friction: friction coefficient, on dry surfaces
     low: m, lowest corner of the box around what can be touched of it, from its centre of mass, along the axes
         of its description
     high: m, highest corner of it
@@ -1619,7 +1619,7 @@ class rdm_sensors(Structure):
 
 class rdm_points(Structure):
     """With the agent option `encoder` ("64,128") a PointNet makes features of a cloud for the actor,
-    beside the entries of the row that it sees (actor_obs, "vision": nothing of an object); critics
+    beside the entries of the row that it reads (actor_obs, "vision": nothing of an object); critics
     see rows alone. Of rdm_sensors:
 
       rdm_points seen = {.struct_size = sizeof seen, .num_points = s.num_points, .points = s.points};
@@ -1700,7 +1700,7 @@ class PretrainReport(Record):
     train_loss: float  # of the last epoch, mean cross-entropy of a point, nats
     validation_loss: float  # likewise, of the clouds held back; 0 without
     accuracy: float  # share of points of these that are told right; of all clouds without
-    most_common: float  # share that whoever always says the commonest label tells right
+    most_common: float  # share that always saying the most common label gets right
 
 
 class rdm_pretrain_report(Structure):
@@ -1711,7 +1711,7 @@ class rdm_pretrain_report(Structure):
     train_loss: of the last epoch, mean cross-entropy of a point, nats
     validation_loss: likewise, of the clouds held back; 0 without
     accuracy: share of points of these that are told right; of all clouds without
-    most_common: share that whoever always says the commonest label tells right
+    most_common: share that always saying the most common label gets right
     """
 
     struct_size: int
@@ -2135,7 +2135,7 @@ class ShieldRow(Record):
     kind: int  # RDM_SHIELD_*
     column: int  # of what was refused: the cost that it would have met, -1: it was not, or the copy diverged; of what was projected: of the guard that it broke most, -1: the host's own
     ahead: int  # control steps until that, 0: nothing was refused
-    backup: int  # that the plan goes on by: a policy's number, then zero, then hold, of those that it has; -1: no other way was looked for
+    backup: int  # that the plan continues by: a policy's number, then zero, then hold, of those that it has; -1: no other way was looked for
     planned: int  # decisions that its plan still has, with the one to come next
 
 
@@ -2145,7 +2145,7 @@ class rdm_shield_row(Structure):
     column: of what was refused: the cost that it would have met, -1: it was not, or the copy diverged; of what
         was projected: of the guard that it broke most, -1: the host's own
     ahead: control steps until that, 0: nothing was refused
-    backup: that the plan goes on by: a policy's number, then zero, then hold, of those that it has; -1: no
+    backup: that the plan continues by: a policy's number, then zero, then hold, of those that it has; -1: no
         other way was looked for
     planned: decisions that its plan still has, with the one to come next
     """
@@ -2497,8 +2497,8 @@ class rdm_ranks(Structure):
     calls of rollout, act with RDM_ACT_SAMPLE, record, put, update, save with memory,
     rdm_checkpoint_write: these exchange messages, in one order. Each cuts its updates into slices as
     it likes, which wait for the others' where they exchange; what ends one is rdm_agent_cancel.
-    Loading exchanges nothing: each takes its own part. A state that was saved by some ranks goes on
-    with any other number that `blocks` allows.
+    Loading exchanges nothing: each takes its own part. A state that was saved by some ranks
+    continues with any other number that `blocks` allows.
       - CANCELLED: a hook failed (a rank is gone), or rdm_agent_cancel was called on one rank, which
         stops all of them at one place. The handles are good; after a failed hook, what ranks have
         learned may differ: load a state that was saved.
@@ -2800,7 +2800,7 @@ class rdm_robot_def(Structure):
     palm_p: centre of the palm's surface, in palm_link's frame, m
     palm_normal: unit: out of the palm
     palm_fingers: unit: the way the fingers point; of a gripper any in the palm's plane
-    hold_p: where a thing is that the hand holds, in palm_link's frame, m
+    hold_p: where a held object is, in palm_link's frame, m
     """
 
     struct_size: int
@@ -2922,7 +2922,7 @@ class rdm_object_def(Structure):
     mass: kg, 1e-6 to 1000
     moment: xx yy zz xy xz yz, kg m2, the frame's origin then is the centre of mass; all 0: of the shapes,
         solid, of one density; where two overlap, both count
-    friction: coefficient of its surface on dry things, 0 to 10; default 0.5
+    friction: friction coefficient, on dry surfaces, 0 to 10; default 0.5
     """
 
     struct_size: int
@@ -3036,7 +3036,7 @@ class ContactLaw(Record):
 
     pyramid: int  # flag, of soft contacts: friction by edges, as MuJoCo has it by default: the softer the more it rubs, and sliding lifts
     restitution: float  # 0 to 1: share of the speed at which a hard contact closed, above 0.05 m/s, that it parts with
-    torsional: float  # m, 0 to 10: turning about the normal is opposed by at most this times the normal force
+    torsional: float  # m, 0 to 10: rotation about the normal is opposed by at most this times the normal force
     rolling: float  # m, 0 to 10: rolling likewise
     time_constant: float  # s, to 10: a spring and damper, as MuJoCo's solref; 0: hard. At least two substeps count
     damping_ratio: float  # of it, 0.01 to 100; default 1
@@ -3050,7 +3050,7 @@ class rdm_contact_law(Structure):
     pyramid: flag, of soft contacts: friction by edges, as MuJoCo has it by default: the softer the more it
         rubs, and sliding lifts
     restitution: 0 to 1: share of the speed at which a hard contact closed, above 0.05 m/s, that it parts with
-    torsional: m, 0 to 10: turning about the normal is opposed by at most this times the normal force
+    torsional: m, 0 to 10: rotation about the normal is opposed by at most this times the normal force
     rolling: m, 0 to 10: rolling likewise
     time_constant: s, to 10: a spring and damper, as MuJoCo's solref; 0: hard. At least two substeps count
     damping_ratio: of it, 0.01 to 100; default 1
@@ -3135,14 +3135,14 @@ class Factor(Record):
     """The values of rdm_factor."""
 
     what: int  # RDM_SCALE_*
-    index: int  # of the thing
+    index: int  # of the link, robot or body, or the first material
     other: int  # the second material of a friction
     factor: float  # times the scene's value
 
 
 class rdm_factor(Structure):
     """what: RDM_SCALE_*
-    index: of the thing
+    index: of the link, robot or body, or the first material
     other: the second material of a friction
     reserved: 0
     factor: times the scene's value
@@ -3673,9 +3673,10 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_check_experimental": Function(
         c_int32, {"version": c_uint32},
         {}, False,
-        """For who calls experimental functions: VERSION_MISMATCH unless major and minor of `version`, the
-        header's RDM_VERSION, are the library's. With ELF's symbol versions the loader has looked; who
-        finds functions by name at run time, or runs where symbols have no versions, asks here.
+        """For programs that call experimental functions: VERSION_MISMATCH unless major and minor of
+        `version`, the header's RDM_VERSION, are the library's. With ELF's symbol versions the loader has
+        checked it; a program that finds functions by name at run time, or that runs where symbols have
+        no versions, asks here.
         """),
     "rdm_build_info": Function(
         c_int32, {"io": POINTER(rdm_build)},
@@ -3710,7 +3711,7 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_policy_read_memory": Function(
         c_int32, {"bytes": c_void_p, "size": c_size_t, "memory": c_void_p},
         {}, False,
-        """For who has no heap: how many bytes rdm_policy_read_in needs for the policy file bytes [size].
+        """For programs without a heap: the bytes that rdm_policy_read_in needs for the file bytes [size].
         Errors as of rdm_policy_read, but for a network that does not give the file's example.
         """),
     "rdm_policy_read_in": Function(
@@ -3745,7 +3746,7 @@ FUNCTIONS: dict[str, Function] = {
         scratch [scratch_bytes]: rdm_policy_scratch bytes or more, aligned in any way. No heap, no hidden
         state: any number of threads, each with its own scratch. ARGUMENT when obs or noise is not
         finite, or so large that the network overflows (action is written then, and of no use). STATE for
-        a policy that sees points.
+        a policy that reads points.
         """),
     "rdm_policy_sample": Function(
         c_int32, {"p": c_void_p, "obs": c_void_p, "rows": c_int32, "noise": c_void_p, "action": c_void_p, "mean": c_void_p, "scratch": c_void_p, "scratch_bytes": c_size_t},
@@ -3760,7 +3761,7 @@ FUNCTIONS: dict[str, Function] = {
         {"obs": Rows("float32", ("rows", "obs_dim")), "novelty": Rows("float32", ("rows",))}, False,
         """How far rows are from those that the policy learned on: novelty [rows] of obs [rows][obs_dim].
 
-          z_j = (x_j - mean_j) / deviation_j, of the m entries x of a row that the policy sees
+          z_j = (x_j - mean_j) / deviation_j, of the m entries x of a row that the policy reads
           novelty = max(sqrt(sum of z_j^2 / m) / a, max of |z_j| / b)
 
         mean and deviation are the normaliser's, of all rows in training (with options obs_freeze and
@@ -3778,7 +3779,7 @@ FUNCTIONS: dict[str, Function] = {
         {}, False,
         """"actor.0.weight" of rows outputs and cols inputs, "actor.log_std" or "actor.log_std_bounds",
         "normalizer.shift|scale|clip", "example.obs|action". RANGE ends the list. All are over whole rows
-        of obs_dim: a weight of an entry that the policy does not see is 0. Of one that sees points
+        of obs_dim: a weight of an entry that the policy does not read is 0. Of one that reads points
         "actor.0.weight" has a column for each feature behind those, and there are "encoder.0.weight" and
         so on, "encoder.origin" and "encoder.range", in m, "encoder.activation" (0 tanh, 1 elu, 2 relu),
         "example.points", in m, and "example.point_class".
@@ -3801,7 +3802,7 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_policy_get_columns": Function(
         c_int32, {"p": c_void_p, "columns": c_void_p, "capacity": c_size_t, "count": c_void_p},
         {"columns": Rows("int32", ("capacity",))}, False,
-        """Which entries of a row of obs_dim the policy sees (agent option actor_obs), ascending: writes up
+        """Which entries of a row of obs_dim the policy reads (agent option actor_obs), ascending: writes up
         to capacity of them to columns [capacity]; *count is how many there are.
         """),
     "rdm_task_count": Function(
@@ -3907,7 +3908,7 @@ FUNCTIONS: dict[str, Function] = {
         caller's all the time: at least `ours` of rdm_pool_config_memory. Fewer are RANGE, and the text
         says how many are needed. Neither alloc hook nor C library are asked for memory, then and later,
         but by the physics engine, and by the system for threads; what rdm_pool_set_starts keeps must
-        have room in what is left (MEMORY).
+        fit into what is left (MEMORY).
         """),
     "rdm_pool_destroy": Function(
         None, {"p": c_void_p},
@@ -3962,7 +3963,7 @@ FUNCTIONS: dict[str, Function] = {
         {"seeds": Rows("uint64", ("num_envs",)), "mask": Rows("uint8", ("num_envs",))}, False,
         """Starts new episodes where mask [num_envs] is not 0 (NULL: everywhere). seeds [num_envs] name new
         streams: the seed alone, whatever the world's number, so that seed s gives what a pool of one
-        world created with seed s has. NULL: go on with the worlds' own, which after create is
+        world created with seed s has. NULL: continue the worlds' own, which after create is
         (config.seed, i). Costs are 0 afterwards. An entry of the first observation that is not finite is
         written as 0, and the world is flagged RDM_STATUS_DIVERGED, its episode with it. Where a host's
         own task fails: its error, for the lowest such world; these are flagged RDM_STATUS_TASK and stand
@@ -4015,8 +4016,8 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_pool_get_contacts": Function(
         c_int32, {"p": c_void_p, "env": c_int32, "out": POINTER(rdm_contact), "capacity": c_size_t, "count": c_void_p},
         {}, False,
-        """Writes up to capacity contacts to out [capacity], of things asleep as they fell asleep; *count is
-        how many there are.
+        """Writes up to capacity contacts to out [capacity], of sleeping bodies as they were when they fell
+        asleep; *count is how many there are.
         """),
     "rdm_pool_render": Function(
         c_int32, {"p": c_void_p, "env": c_int32, "camera": c_char_p, "w": c_int32, "h": c_int32, "rgb": c_void_p, "depth": c_void_p, "segmentation": c_void_p},
@@ -4033,8 +4034,8 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"dst": c_void_p, "dst_env": c_int32, "src": c_void_p, "src_env": c_int32},
         {}, False,
         """World dst_env of dst (-1: all of them) becomes what world src_env of src is, at the price of
-        copying memory: afterwards it goes on with the bytes that read_state(write_state) would give, and
-        its rows (but action, and those of rdm_sensors) are the other's. Pools of the same task and
+        copying memory: afterwards it continues with the bytes that read_state(write_state) would give,
+        and its rows (but action, and those of rdm_sensors) are the other's. Pools of the same task and
         options, of any sizes, threads and seeds; src may be dst. ARGUMENT for pools that differ, RANGE
         for worlds that are not there: nothing changes. No heap.
         """),
@@ -4140,9 +4141,9 @@ FUNCTIONS: dict[str, Function] = {
         count; its cost counts, and an end in it ends the episode. Its steps count too, but in a row that
         neither ends an episode nor follows another row of one: that is what next-step autoreset returns
         for the step that only resets. An episode that is not over after max_steps control steps counts
-        as one there (RDM_EPOCH_CUT): its sums are closed and begin anew. The path goes on, so the value
-        of the next observation follows, as after a truncation. Option episode_steps sets that length,
-        cost_limit_per_step a limit on the cost per control step, which needs no ends.
+        as one there (RDM_EPOCH_CUT): its sums are closed and begin anew. The path continues, so the
+        value of the next observation follows, as after a truncation. Option episode_steps sets that
+        length, cost_limit_per_step a limit on the cost per control step, which needs no ends.
         """),
     "rdm_agent_put": Function(
         c_int32, {"a": c_void_p, "obs": c_void_p, "action": c_void_p, "t": POINTER(rdm_transition)},
@@ -4153,9 +4154,9 @@ FUNCTIONS: dict[str, Function] = {
         rdm_agent_record stand, the two may take turns, and its log-probability and values are computed
         here: an agent of the same config and seed learns the same from it as one that acted, but the
         streams of noise stay where they are. Rows of one environment are one path, in their order; with
-        option noise_correlation its noise is taken to go on from decision to decision. Option
-        normalize_obs goes on counting with each row, as in rdm_agent_act, while a policy file stands
-        still: obs_freeze ends that.
+        option noise_correlation its noise is taken to continue from decision to decision. Option
+        normalize_obs keeps counting with each row, as in rdm_agent_act, while a policy file does not
+        change: obs_freeze ends that.
         STATE as for rdm_agent_act, and for a generation that is not the agent's: its data are stale.
         RANGE for an action beyond +-1e5, ARGUMENT as for rdm_agent_record; then nothing has changed.
         UNSUPPORTED for an agent with option encoder, and for a generation where option average is on: a
@@ -4171,7 +4172,7 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_agent_update_begin": Function(
         c_int32, {"a": c_void_p, "last_obs": c_void_p},
         {"last_obs": Rows("float32", ("num_envs", "obs_dim"))}, False,
-        """The same in slices, for who may not wait: a robot at 1 kHz.
+        """The same in slices, for a control loop that must not wait: a robot at 1 kHz.
           rdm_agent_update_begin(agent, obs);
           for (int32_t done = 0; !done;) {
             wait_for_tick(obs);
@@ -4194,7 +4195,7 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_agent_update_slice": Function(
         c_int32, {"a": c_void_p, "units": c_int32, "done": c_void_p, "io": POINTER(rdm_epoch)},
         {}, False,
-        """The same in slices, for who may not wait: a robot at 1 kHz.
+        """The same in slices, for a control loop that must not wait: a robot at 1 kHz.
           rdm_agent_update_begin(agent, obs);
           for (int32_t done = 0; !done;) {
             wait_for_tick(obs);
@@ -4235,8 +4236,8 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"a": c_void_p},
         {}, False,
         """Drops the horizon that has begun, an update in slices, and a cancel that waits: from any state
-        back to between epochs. The policy learns nothing from what it drops. Episodes that run go on,
-        with what was recorded of them.
+        back to between epochs. The policy learns nothing from what it drops. Running episodes
+        continue, with what was recorded of them.
         """),
     "rdm_agent_set_option": Function(
         c_int32, {"a": c_void_p, "option": POINTER(rdm_option)},
@@ -4284,7 +4285,7 @@ FUNCTIONS: dict[str, Function] = {
         {}, False,
         """The agent's network and statistics as they are now, into a policy of the same sizes, without
         memory: afterwards p is what rdm_agent_write_policy writes, but for the names of its fields.
-        ARGUMENT names what differs, in network, entries that it sees, normaliser, layout_hash or
+        ARGUMENT names what differs, in network, entries that it reads, normaliser, layout_hash or
         action_repeat, and p is as it was. Nobody else may be in a call with p, nor an actor or planner
         that plays it: a rdm_policy_act meanwhile is STATE.
         """),
@@ -4367,7 +4368,7 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"a": c_void_p, "points": POINTER(rdm_points), "label": c_void_p, "rows": c_int32, "how": POINTER(rdm_pretrain_config), "io": POINTER(rdm_pretrain_report)},
         {"label": Rows("uint8", ("rows", "num_points"))}, True,
         """The agent's encoder learns to tell the points of clouds [rows] apart by label [rows][num_points],
-        each less than num_labels: a head sees a point's last hidden layer and the cloud's features, and
+        each less than num_labels: a head reads a point's last hidden layer and the cloud's features, and
         is thrown away afterwards. Nothing else changes. Same seed, same bytes, for any number of
         threads. STATE inside a horizon or without an encoder; CANCELLED after rdm_agent_cancel: the
         encoder as before. io may be NULL.
@@ -4407,7 +4408,7 @@ FUNCTIONS: dict[str, Function] = {
         ends, else down where rays pass. Points that are not finite are left out, and those nearer to the
         origin than a voxel's side: a depth of 0 says that nothing was seen. A full map grows no more:
         the call returns OK, *dropped (may be NULL) says how many voxels were left out, and voxels that
-        exist go on being updated.
+        exist are still updated.
         """),
     "rdm_map_scan": Function(
         c_int32, {"m": c_void_p, "p": c_void_p, "env": c_int32, "camera": c_char_p, "w": c_int32, "h": c_int32, "skip": c_void_p, "num_skip": c_size_t, "dropped": c_void_p},
@@ -4498,9 +4499,9 @@ FUNCTIONS: dict[str, Function] = {
         {"obs": Rows("float32", ("num_envs", "obs_dim")), "mask": Rows("uint8", ("num_envs",)), "action": Rows("float32", ("num_envs", "action_dim"))}, True,
         """action [num_envs][action_dim] for one step of the worlds whose mask [num_envs] is not 0 (NULL:
         all): a new decision on obs [num_envs][obs_dim] where one is due, else the one that is held; rows
-        of other worlds are not written. points: clouds of the worlds for a policy that sees points, NULL
-        for others. No heap. ARGUMENT for rows that are not finite where a decision is due: nothing is
-        counted then.
+        of other worlds are not written. points: clouds of the worlds for a policy that reads points,
+        NULL for others. No heap. ARGUMENT for rows that are not finite where a decision is due: nothing
+        is counted then.
         """),
     "rdm_actor_reset": Function(
         c_int32, {"actor": c_void_p, "terminated": c_void_p, "truncated": c_void_p},
@@ -4513,7 +4514,7 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"actor": c_void_p, "bytes": c_void_p, "capacity": c_size_t, "size": c_void_p},
         {}, True,
         """Held actions, counts and noise as bytes [capacity]; NULL asks for the size. An actor of the same
-        policy and config that reads them goes on with the same bytes.
+        policy and config that reads them continues with the same bytes.
         """),
     "rdm_actor_read_state": Function(
         c_int32, {"actor": c_void_p, "bytes": c_void_p, "size": c_size_t},
@@ -4579,8 +4580,8 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_planner_reset": Function(
         c_int32, {"planner": c_void_p},
         {}, True,
-        """Forgets the plan; the noise goes on. The next plan begins at rdm_pool_get_initial_mean, or the
-        policy's rollout.
+        """Forgets the plan; the stream of noise continues. The next plan begins at
+        rdm_pool_get_initial_mean, or the policy's rollout.
         """),
     "rdm_planner_get_plan": Function(
         c_int32, {"planner": c_void_p, "plan": c_void_p},
@@ -4598,7 +4599,7 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"planner": c_void_p, "bytes": c_void_p, "capacity": c_size_t, "size": c_void_p},
         {}, True,
         """Plan, noise and counters as bytes [capacity]; NULL asks for the size. A planner of the same task,
-        options, noise and limits that reads them goes on with the same bytes.
+        options, noise and limits that reads them continues with the same bytes.
         """),
     "rdm_planner_read_state": Function(
         c_int32, {"planner": c_void_p, "bytes": c_void_p, "size": c_size_t},
@@ -4647,7 +4648,7 @@ FUNCTIONS: dict[str, Function] = {
         {}, True,
         """One backup more, behind the policies that it has: its mean actions. It must outlive the shield.
         VERSION_MISMATCH for one that does not fit the pool, ARGUMENT for one that holds its actions for
-        another time than a decision and with predict=false, UNSUPPORTED for one that sees points, RANGE
+        another time than a decision and with predict=false, UNSUPPORTED for one that reads points, RANGE
         from the seventh on or where option tries is too small. Plans stay.
         """),
     "rdm_shield_add_guard": Function(
@@ -4736,8 +4737,8 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"shield": c_void_p, "bytes": c_void_p, "capacity": c_size_t, "size": c_void_p},
         {}, True,
         """Plans, noise, counts and the host's guards as bytes [capacity]; NULL asks for the size. A shield
-        of the same config with as many guards that reads them goes on with the same bytes, beside a pool
-        that was set to the state of that moment.
+        of the same config with as many guards that reads them continues with the same bytes, beside a
+        pool that was set to the state of that moment.
         """),
     "rdm_shield_read_state": Function(
         c_int32, {"shield": c_void_p, "bytes": c_void_p, "size": c_size_t},
@@ -5056,8 +5057,8 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"scene": c_void_p, "a": c_char_p, "b": c_char_p, "law": POINTER(rdm_contact_law)},
         {}, True,
         """RANGE, ARGUMENT: the text names the field. Making the pool is UNSUPPORTED with engine=ode where a
-        law has more than a restitution. Fingertips feel the forces of such contacts, not the torques of
-        turning.
+        law has more than a restitution. Fingertips feel the forces of such contacts, not their
+        torsional torques.
         """),
     "rdm_scene_set_gravity": Function(
         c_int32, {"scene": c_void_p, "gravity": c_void_p},
@@ -5172,8 +5173,8 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_world_get_contacts": Function(
         c_int32, {"world": c_void_p, "out": POINTER(rdm_contact), "capacity": c_size_t, "count": c_void_p},
         {}, True,
-        """Contacts of the last substep to out [capacity], of things asleep as they fell asleep; *count is
-        how many there are.
+        """Contacts of the last substep to out [capacity], of sleeping bodies as they were when they fell
+        asleep; *count is how many there are.
         """),
     "rdm_world_get_overlap": Function(
         c_int32, {"world": c_void_p, "body": c_int32, "depth": c_void_p},
@@ -5184,8 +5185,8 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_world_set_body": Function(
         c_int32, {"world": c_void_p, "body": c_int32, "motion": POINTER(rdm_motion)},
         {}, True,
-        """Places for what moves freely; joints q [n] and rates qd [n] (NULL: 0) of a robot of n joints,
-        within their ranges, and with them the targets of its drives.
+        """Places for what moves freely; joints q [n] and velocities qd [n] (NULL: 0) of a robot of n
+        joints, within their ranges, and with them the targets of its drives.
         """),
     "rdm_world_set_base": Function(
         c_int32, {"world": c_void_p, "robot": c_int32, "motion": POINTER(rdm_motion)},

@@ -144,7 +144,7 @@ class Actor:
         return bytes_of(lib.rdm_actor_write_state, self._handle.value)
 
     def set_state(self, state: bytes) -> None:
-        """Goes on from state(), with the same bytes."""
+        """Continues from state(), with the same bytes."""
         check(lib.rdm_actor_read_state(self._handle.value, bytes(state), len(state)))
 
     def _observed(self, obs: Any) -> tuple[Array, bool]:
@@ -200,7 +200,7 @@ class Actor:
             return None
         seen, i = self._pool.sensors, self.policy.info
         if seen.points is None or seen.points.shape[1] != i.num_points:
-            raise UnsupportedError(f"actor: the policy sees clouds of {i.num_points} points: options modality=points and "
+            raise UnsupportedError(f"actor: the policy reads clouds of {i.num_points} points: options modality=points and "
                                    f"points={i.num_points}")
         raw = _abi.rdm_sensors(struct_size=ctypes.sizeof(_abi.rdm_sensors))
         check(lib.rdm_pool_get_sensors(self._pool._open(), byref(raw)))

@@ -223,7 +223,7 @@ class Agent(Hinted):
         return self._epoch(epoch)
 
     def update_begin(self, last_obs: Any) -> None:
-        """The same in slices, for who has other things to do meanwhile; then update_slice until it gives the epoch.
+        """The same in slices, between which the caller can act; then update_slice until it gives the epoch.
 
             agent.update_begin(obs)
             while (epoch := agent.update_slice()) is None:
@@ -390,7 +390,7 @@ class Agent(Hinted):
         return state
 
     def load(self, state: Union[bytes, bytearray, memoryview, str, os.PathLike[str]]) -> None:
-        """Goes on from save() of an agent of the same configuration, its bytes or its path; nothing changes when it
+        """Continues from save() of an agent of the same configuration, its bytes or its path; nothing changes when it
         fails."""
         data = read_whole(state, "agent") if isinstance(state, (str, os.PathLike)) else bytes(state)
         with self._lock:
@@ -404,7 +404,7 @@ class Agent(Hinted):
                                                  bytes(note), len(note)))
 
     def read_checkpoint(self, path: Union[str, os.PathLike[str]], pool: Optional[Pool] = None) -> bytes:
-        """Goes on from write_checkpoint, and returns its note; nothing changes when it fails."""
+        """Continues from write_checkpoint, and returns its note; nothing changes when it fails."""
         size = c_size_t()
         with self._lock:
             raw = ctypes.create_string_buffer(1)

@@ -57,7 +57,7 @@ class Shape(_abi.ShapeInfo):
 
 
 class Object(_abi.ObjectInfo):
-    """A thing by name, for option object; kind is the redman.ShapeKind of its only shape, -1 where it has several."""
+    """An object by name, for option object; kind is the redman.ShapeKind of its only shape, -1 where it has several."""
 
 
 class Joint(_abi.JointInfo):

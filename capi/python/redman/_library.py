@@ -56,7 +56,7 @@ lib = _load()
 
 
 def policy_folders() -> list[Path]:
-    """Where the policies that come with redman may be: in a wheel, in the project's tree, beside an installed library."""
+    """Where the bundled policies may be: in a wheel, in the project's tree, beside an installed library."""
     here = Path(__file__).resolve().parent
     library = Path(lib._name)
     beside = library.resolve().parent.parent if library.is_absolute() else Path(sys.prefix)

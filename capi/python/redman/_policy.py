@@ -61,7 +61,7 @@ class Policy(Hinted):
         pool.step(actor())
 
     A policy decides every policy.info.action_repeat control steps; an actor holds its actions between. act, and calling the
-    policy, are one decision each, and whoever calls them holds the action. origin is what its run folder knows: task, options,
+    policy, are one decision each, and the caller holds the action. origin is what its run folder knows: task, options,
     limits; evaluate and a notebook's picture use them.
     """
 
@@ -99,7 +99,7 @@ class Policy(Hinted):
 
     @classmethod
     def trained(cls, task: Union[str, _discovery.Task]) -> Policy:
-        """Of the policies that come with redman, that of a task: the one of `redman eval --policy trained`."""
+        """The bundled policy of a task: the one of `redman eval --policy trained`."""
         name = _discovery.task(task).name
         for folder in policy_folders():
             if (folder / f"{name}.rdm").is_file():
@@ -119,8 +119,8 @@ class Policy(Hinted):
 
         It is to be held for info.action_repeat control steps: actor() does that, and is what plays a pool or an environment.
         pool.step(policy.act(pool.obs)) at every step is another policy, and a HoldWarning says so.
-        A policy that sees points takes them [n][num_points][3] too, where it has num_point_classes their classes, and
-        where it sees point_color their colours [n][num_points][3], 0 to 255.
+        A policy that reads points takes them [n][num_points][3] too, where it has num_point_classes their classes, and
+        where it reads colours (point_color) these too, as [n][num_points][3], 0 to 255.
         """
         rows_of = _abi.FUNCTIONS["rdm_policy_act"].rows
         observed = np.asarray(obs)
@@ -233,7 +233,7 @@ class Policy(Hinted):
 
     @property
     def columns(self) -> Array:
-        """Which entries of a row the policy sees, ascending: all, but for option actor_obs of its agent."""
+        """Which entries of a row the policy reads, ascending: all, but for option actor_obs of its agent."""
         out = np.empty(self.info.obs_dim, np.int32)
         count = ctypes.c_size_t()
         check(lib.rdm_policy_get_columns(self._open(), out.ctypes.data, len(out), ctypes.byref(count)))

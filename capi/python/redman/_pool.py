@@ -292,7 +292,7 @@ class Pool(Hinted):
     def reset(self, seeds: Union[None, int, Sequence[int], Array] = None, mask: Any = None) -> FloatArray:
         """Starts new episodes where mask holds (None: everywhere) and returns obs.
 
-        seeds name the episodes, one for each world; a single one stands for seed, seed + 1, ... None goes on with
+        seeds name the episodes, one for each world; a single one stands for seed, seed + 1, ... None continues
         the worlds' own streams.
         """
         rows = None
@@ -354,7 +354,7 @@ class Pool(Hinted):
             return raw.raw
 
     def set_state(self, state: bytes, env: int = -1) -> None:
-        """Goes on from state(): the same bytes follow. Writes obs anew and clears the other rows of that world."""
+        """Continues from state(), with the same bytes. Writes obs anew and clears the other rows of that world."""
         with self._lock:
             self._check(lib.rdm_pool_read_state(self._p, int32(env, "env"), bytes(state), len(state)))
 

@@ -40,7 +40,7 @@ class ShieldRow(_abi.ShieldRow):
     # projected: of the guard that it broke most; None: of one that was added.
     column: Optional[int]  # type: ignore[assignment]
     cost: Optional[str]
-    # That the plan goes on by, of Shield.backups; None: no other way was looked for.
+    # That the plan continues by, of Shield.backups; None: no other way was looked for.
     backup: Optional[int]  # type: ignore[assignment]
 
     def __init__(self, struct: _abi.rdm_shield_row, costs: list[str]) -> None:
@@ -51,28 +51,28 @@ class ShieldRow(_abi.ShieldRow):
 
 
 class Shield(Hinted):
-    """Lets an action through only where an exact copy of the world, going on by a known plan, keeps within the budget of every
+    """Lets an action through only where an exact copy of the world, continued by a known plan, keeps within the budget of every
     cost to the episode's end; else another action takes its place. Before that it goes to the nearest action that keeps the
     guards, pool.guards of costs whose budget is 0 and those of add_guard; with options={"predict": False} that is all.
 
         pool = redman.Pool("hand_over_safe_joint", 16, options={"action_repeat": 4})    # a step is a decision
         pool.reset()
-        shield = redman.Shield(pool, policy)            # the policy is the first backup: a way to go on that is known
+        shield = redman.Shield(pool, policy)            # the policy is the first backup: a known way to continue
         for _ in range(19):
             pool.step(shield.act(policy.act(pool.obs)))         # or write pool.action, then shield.act()
         print(shield.stats, pool.stats.violations)
 
-    policy: a Policy, its file or run folder, or "trained", the one that comes with the task; it must hold its actions as long
-    as a decision lasts. Behind policies come action 0 and the hold action (options zero, hold).
+    policy: a Policy, its file or run folder, or "trained", the bundled one of the task; it must hold its actions as long
+    as a decision lasts. After policies, action 0 and the hold action are tried (options zero, hold).
     steps: of the pool that a decision lasts; None: as long as the policy holds an action, 1 without. Where it is more than 1, act
     is called at every so many steps, and its action is held between.
     budgets: on the sum of each cost over an episode, as Agent's cost_limits; None: the cost is not looked at. Column 0 has 0
-    unless it is said.
+    unless given.
     options: `redman.shield_options()` has them with their help. threads: of the copies; 0: as many as the pool has.
 
-    An exact copy knows what its world will draw: where a robot is real, the proof is one for the model, and option copies tries
-    each way in several that draw for themselves. A world in which nothing that was tried is clean is a StateError, which names it, or with options={"unproven": "least"} goes on by what exceeds the
-    budgets least.
+    An exact copy knows what its world will draw. For a real robot the proof is one for the model; option copies tries each
+    way in several copies with draws of their own. A world in which nothing that was tried is clean is a StateError, which
+    names it; with options={"unproven": "least"} it runs what exceeds the budgets least.
     """
 
     _hints = {
@@ -225,7 +225,7 @@ class Shield(Hinted):
 
     @property
     def backups(self) -> list[Union[Policy, str]]:
-        """Ways to go on, in the order in which they are tried: policies, "zero", "hold"."""
+        """Ways to continue, in the order in which they are tried: policies, "zero", "hold"."""
         options, out = self.options, list[Union[Policy, str]](self._policies)
         return out + [name for name in ("zero", "hold") if options[name]]
 
@@ -241,7 +241,7 @@ class Shield(Hinted):
             return bytes_of(lib.rdm_shield_write_state, self._handle.value)
 
     def set_state(self, state: bytes) -> None:
-        """Goes on from state() with the same bytes, beside a pool that was set to the state of that moment."""
+        """Continues from state() with the same bytes, beside a pool that was set to the state of that moment."""
         with self._lock:
             check(lib.rdm_shield_read_state(self._handle.value, bytes(state), len(state)))
 

@@ -67,7 +67,7 @@ class Run(Hinted):
         "epochs": "run.curve has a column for each quantity and a row for each epoch; a callback is given each Epoch",
         "config": "run.options are those of the task, run.agent.options the learner's; config.json of run.folder has all",
         "best": "run.policy is the best one", "model": "run.policy, or run.agent", "history": "run.curve",
-        "resume": "from Python a run does not go on; the command `redman train --resume FOLDER` does, if it has a folder",
+        "resume": "Python does not resume a run; the command `redman train --resume FOLDER` does, if it has a folder",
         "returns": "run.curve.returns", "costs": "run.curve.costs"}
 
     def __init__(self, task: str, algo: str, seed: int, options: dict[str, Value], agent: Agent) -> None:
@@ -97,7 +97,7 @@ class Run(Hinted):
     def load(cls, folder: Union[str, os.PathLike[str]]) -> Run:
         """A run is not read back."""
         raise UnsupportedError(f"Run.load: redman.Policy.load({os.fspath(folder)!r}) and redman.curve(...) read a run folder; "
-                                "the command `redman train --resume FOLDER` goes on with it")
+                                "the command `redman train --resume FOLDER` continues it")
 
     def evaluate(self, episodes: int = 100, num_envs: int = 16, seed: int = 0, threads: int = 0, *, shield: Shielding = None,
                  shield_policy: Optional[Backup] = None) -> Evaluation:
@@ -186,7 +186,7 @@ class _Meter:
         """Leaves the line, and says so when the run is not over."""
         self._say("\n" if self._width else "")
         if run.interrupted:
-            further = f"; go on with redman train --resume {run.folder}" if run.folder else ""
+            further = f"; continue with redman train --resume {run.folder}" if run.folder else ""
             self._say(f"stopped at {run.env_steps} of {self._goal} steps{further}\n")
 
     @staticmethod
@@ -382,7 +382,7 @@ def _steps(steps: float) -> int:
 
 @keywords(aliases={"num_envs": "envs", "cost_limit": "cost_limits", "total_steps": "steps", "total_timesteps": "steps",
                    "num_threads": "threads"},
-          hints={"resume": "from Python a run does not go on; the command `redman train --resume FOLDER` does",
+          hints={"resume": "Python does not resume a run; the command `redman train --resume FOLDER` does",
                  "seeds": _OWN_SEED, "env_id": "task=...", "env": "task=..."}, options=True)
 def train(task: Union[str, _discovery.Task], algo: str = "ppo_lag", steps: float = 1e6, seed: int = 0, envs: int = 64,
           threads: int = 0, options: Optional[Options] = None, cost_limits: CostLimits = None,
@@ -398,7 +398,7 @@ def train(task: Union[str, _discovery.Task], algo: str = "ppo_lag", steps: float
     at once.
 
     out makes a run folder, which `redman eval`, `plot`, `report` and `train --resume` take, with the curve for TensorBoard;
-    from Python itself a run does not go on. task_file: the .task file that the task was registered from, whose text is kept
+    Python itself does not resume a run. task_file: the .task file that the task was registered from, whose text is kept
     there, so that the tool knows the task.
     """
     goal = _steps(steps)

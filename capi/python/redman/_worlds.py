@@ -109,9 +109,9 @@ class Worlds:
 
     def reset(self, seed: Seeds = None, mask: Optional[Array] = None) -> None:
         """New episodes where mask says. An int is seed + i for world i; where a list has None, and after a reset
-        without seeds, worlds go on with the streams that they have."""
+        without seeds, worlds continue with the streams that they have."""
         n = self.pool.num_envs
-        if seed is None:  # the first reset names what is drawn, then worlds go on by themselves
+        if seed is None:  # the first reset names what is drawn, then worlds continue by themselves
             seed, self.seed = self.seed, None
         else:
             self.seed = None

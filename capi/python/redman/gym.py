@@ -13,7 +13,7 @@ is named by its seed alone: world i of reset(seed=s) has the episode of an Env w
 shield=True puts every action under a redman.Shield, which lets it through only where no cost can come of it. Infos then have
 "applied", the action that ran, as the learner would have said it; "intervened", whether it was another; and "shield", what
 was done: "own", "changed", "plan", "unproven" or "projected" (redman.ShieldKind), "" in a reset. Where the shield tries
-noisy actions (shield={"noise": 0} does not), its own noise goes on from episode to episode.
+noisy actions (shield={"noise": 0} does not), its own noise continues from episode to episode.
 
 With option modality (rgb, depth, segmentation, points, voxels joined by +) an observation is a dict: "state", the row, and
 an entry for each of them; pictures of one camera are [height][width]..., of several [cameras][height][width]...
@@ -241,7 +241,7 @@ class VectorEnv(_Named, _VectorEnv):
 
     def reset(self, *, seed: Seeds = None, options: Optional[dict[str, Any]] = None) -> tuple[Any, Info]:
         """New episodes, everywhere or where options["reset_mask"] [num_envs] is True. seed: s names episode s + i for
-        world i, or a list; where it is None, worlds go on with the streams that they have."""
+        world i, or a list; where it is None, worlds continue with the streams that they have."""
         self.worlds.no_options(options, ("reset_mask",))
         mask = (options or {}).get("reset_mask")
         if mask is not None and not (isinstance(mask, np.ndarray) and mask.shape == (self.num_envs,)

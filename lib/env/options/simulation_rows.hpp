@@ -35,7 +35,7 @@ inline constexpr auto kSimulationRows = option_rows<SimulationOptions>(
     row<&SolverDef::contact_cfm>(number_option("contact_cfm", 1e-4, 0, 1, "softness of contacts")),
     row<&SolverDef::contact_layer>(number_option(
         "contact_layer", 0.0005, 0, 0.01,
-        "depth at which things rest, m; less for thin things: a twentieth of half their thickness")),
+        "depth at which bodies rest, m; less for thin ones: a twentieth of half their thickness")),
     row<&SolverDef::contact_max_speed>(
         number_option("contact_max_speed", 0, 0, 100,
                       "bound of depth correction, m/s; 0: 1 in engine ode, 0.4 in engine articulated")),
@@ -64,14 +64,14 @@ inline constexpr auto kSimulationRows = option_rows<SimulationOptions>(
                     "engine articulated: numbers computed at a time; the results are the same")),
     row<&SolverDef::sleep_time>(number_option(
         "sleep_time", 0, 0, 100,
-        "engine articulated: things that were slow for so long sleep until touched, s; 0: never")),
+        "engine articulated: bodies that were slow for so long sleep until touched, s; 0: never")),
     row<&SolverDef::sleep_speed>(
-        number_option("sleep_speed", 0.01, 0, 10, "speed below which a thing is slow, m/s")),
+        number_option("sleep_speed", 0.01, 0, 10, "speed below which a body is slow, m/s")),
     row<&SolverDef::sleep_spin>(
-        number_option("sleep_spin", 0.25, 0, 100, "angular speed below which a thing is slow, rad/s")),
+        number_option("sleep_spin", 0.25, 0, 100, "angular speed below which a body is slow, rad/s")),
     row<&SolverDef::speculative_contacts>(flag_option(
         "speculative_contacts", false,
-        "engine articulated: fast things stop at what they would pass through; costs some speed")),
+        "engine articulated: fast bodies stop at what they would pass through; costs some speed")),
     row<&SolverDef::exact>(legacy(flag_option(
         "exact_solver", true,
         "engine ode: the direct solver; false: QuickStep's eight sweeps, in which grips slip, for piles"))));
