@@ -179,6 +179,7 @@ inline void* aligned_scratch(void* scratch, size_t size, size_t bytes) {
 
 // Sizes of structs that have grown, as they were at first.
 inline constexpr size_t kFirstBuildSize = offsetof(rdm_build, differs);
+inline constexpr size_t kFirstTaskSize = offsetof(rdm_task, action_order);
 inline constexpr size_t kFirstSpecSize = offsetof(rdm_spec, action_repeat);
 inline constexpr size_t kFirstEpochSize = offsetof(rdm_epoch, cost_signal);
 inline constexpr size_t kFirstTransitionSize = offsetof(rdm_transition, status);

@@ -61,6 +61,7 @@ Described describe(const TaskInfo& info) {
   d.task.num_options = options.count();
   d.task.num_cameras = info.num_cameras;
   d.task.num_defaults = info.num_defaults;
+  d.task.action_order = lasting(task->action_order());
   for (int32_t i = 0; i < d.task.num_fields; ++i) {
     d.fields.push_back(field_of(*task, i));
     d.fields.back().name = lasting(d.fields.back().name);
@@ -112,8 +113,8 @@ int32_t rdm_task_count(void) {
 
 rdm_result rdm_task_at(int32_t index, rdm_task* io) {
   return call([&] {
-    check_out(io, sizeof(rdm_task), "io");
-    write_struct(io, described(index)->task, sizeof(rdm_task), "io");
+    check_out(io, kFirstTaskSize, "io");
+    write_struct(io, described(index)->task, kFirstTaskSize, "io");
   });
 }
 

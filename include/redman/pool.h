@@ -21,6 +21,8 @@ typedef struct rdm_task { /* a task with its default options */
   int32_t num_options;      /* for rdm_task_option_at                                         */
   int32_t num_cameras;      /* for rdm_task_camera_at                                         */
   int32_t num_defaults;     /* for rdm_task_default_at                                           */
+  const char *action_order; /* what the entries of the action are: "thrust, turn"; of hands
+                             * groups, "right joints, force, torque"; default options         */
 } rdm_task;
 typedef struct rdm_cost_info { /* a cost column */
   uint32_t struct_size;     /* in: bytes                                                      */

@@ -67,6 +67,18 @@ TEST_P(ContractTasks, ValuesAreFiniteAndEpisodesEnd) {
   rdm_pool_destroy(p);
 }
 
+TEST_P(ContractTasks, TheOrderOfTheActionNamesEveryEntryOrGroupsOfJoints) {
+  int32_t index = -1;
+  ASSERT_EQ(rdm_task_find(GetParam().c_str(), &index), RDM_OK);
+  rdm_task t = RDM_INIT(rdm_task);
+  ASSERT_EQ(rdm_task_at(index, &t), RDM_OK);
+  const std::string order = t.action_order;
+  int32_t words = 1;
+  for (size_t at = order.find(", "); at != std::string::npos; at = order.find(", ", at + 1)) ++words;
+  EXPECT_FALSE(order.empty());
+  EXPECT_TRUE(words == t.action_dim || order.find("joints") != std::string::npos) << order;
+}
+
 TEST_P(ContractTasks, ABadActionEndsItsEpisodeAlone) {
   rdm_pool *p = started(config()), *clean = started(config());
   const rdm_spec s = spec_of(p);

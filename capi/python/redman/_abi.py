@@ -669,6 +669,7 @@ class Task(Record):
     num_options: int  # for rdm_task_option_at
     num_cameras: int  # for rdm_task_camera_at
     num_defaults: int  # for rdm_task_default_at
+    action_order: str  # what the entries of the action are: "thrust, turn"; of hands groups, "right joints, force, torque"; default options
 
 
 class rdm_task(Structure):
@@ -684,6 +685,8 @@ class rdm_task(Structure):
     num_options: for rdm_task_option_at
     num_cameras: for rdm_task_camera_at
     num_defaults: for rdm_task_default_at
+    action_order: what the entries of the action are: "thrust, turn"; of hands groups, "right joints, force,
+        torque"; default options
     """
 
     struct_size: int
@@ -698,6 +701,7 @@ class rdm_task(Structure):
     num_options: int
     num_cameras: int
     num_defaults: int
+    action_order: bytes | None
     _fields_ = [
         ("struct_size", c_uint32),
         ("control_dt", c_float),
@@ -711,6 +715,7 @@ class rdm_task(Structure):
         ("num_options", c_int32),
         ("num_cameras", c_int32),
         ("num_defaults", c_int32),
+        ("action_order", c_char_p),
     ]
 
 
