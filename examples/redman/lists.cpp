@@ -4,6 +4,7 @@
 #include <redman/redman.hpp>
 
 #include "commands.hpp"
+#include "common/manual.hpp"
 #include "common/names.hpp"
 #include "common/presets.hpp"
 #include "common/text.hpp"
@@ -51,6 +52,7 @@ Json task_json(int32_t index, const Presets& all_presets) {
                     {"summary", t.summary},
                     {"obs_dim", t.obs_dim},
                     {"action_dim", t.action_dim},
+                    {"action_order", t.action_order},
                     {"cost_dim", t.cost_dim},
                     {"costs", std::move(costs)},
                     {"max_steps", t.max_steps},
@@ -122,7 +124,9 @@ Report list_tasks(const ListFlags& flags) {
     table.add({name, std::to_string(t.obs_dim), std::to_string(t.action_dim), std::to_string(t.cost_dim),
                std::to_string(t.max_steps), limit_text(task_costs(i)), t.summary});
   }
+  const bool page = flags.markdown && only >= 0;
   const std::string text = flags.presets    ? presets_text(only, flags.markdown, presets)
+                           : page           ? task_page(only)
                            : flags.markdown ? table.markdown()
                            : only >= 0      ? task_text(only)
                                             : table.text();
@@ -142,7 +146,7 @@ Report list_algos(const ListFlags& flags) {
     table.add({flags.markdown ? format("`%s`", a.name) : a.name, a.summary});
     if (only >= 0) text = format("%s: %s\n\n", a.name, a.summary) + options_text(options);
   }
-  if (flags.markdown) text = table.markdown();
+  if (flags.markdown) text = only >= 0 ? algo_page(only) : table.markdown();
   return {object_of({{"algos", std::move(all)}}), text.empty() ? table.text() : text};
 }
 
@@ -170,7 +174,8 @@ void add_list(CLI::App& app, Run& run, const char* name, const char* help, Repor
     command->add_flag("--presets", flags->presets,
                       "print how many entries of each task's observation the presets of actor_obs leave");
   command->add_option("name", flags->name, "show one of them with its options");
-  command->add_flag("--markdown", flags->markdown, "print the table of the manual pages");
+  command->add_flag("--markdown", flags->markdown,
+                    "print the table of the manual pages; with a name, its page");
   command->callback([&run, flags, list] { run = [flags, list] { return list(*flags); }; });
 }
 
