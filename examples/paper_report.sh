@@ -1,10 +1,14 @@
 #!/usr/bin/env bash
 # The tables of examples/paper_tables.sh out of the runs that it kept, without running anything:
-#   bash examples/paper_report.sh [RESULTS]   RESULTS: the folder with runs.csv, default examples/results
+#   bash examples/paper_report.sh [RESULTS]      RESULTS: the folder with runs.csv, default examples/results
 # writes RESULTS/table1.md, command.md (with costs of commanded targets), fig7.md, second.md, shield.md, claims.md and short.md, which
-# hand_tasks.md has.
+# hand_tasks.md has;
+#   bash examples/paper_report.sh --block ALGORITHM
+# prints the block `runs` of the algorithm's page in the manual.
 set -eu
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+block=
+[ "${1:-}" != --block ] || { block=$2; shift 2; }
 results=${1:-$root/examples/results}
 # For the awk programs of the tables: a figure as text.
 number='function number(x) { return sprintf(x >= 1e3 ? "%.0f" : "%.3g", x) }
@@ -148,6 +152,21 @@ claims() {
       row("IPO needs a start within the limit (these start above it in the finger tasks, at it or below in the joint ones)", all(v), f)
     }'
 }
+
+if [ -n "$block" ]; then
+  printf '\n## Measured\n<!-- runs -->\n'
+  { published | sed 's/^/P /'; for part in table1 fig7 command; do means $part | sed "s/^/$part /"; done; } |
+    awk -v algo="$block" "$number"'
+    $1 == "P" { if ($3 == algo) known[$2] = $4 " @ " $5; next }
+    $3 != algo { next }
+    !rows++ { print "| task | costs of | limit | seeds | return | cost | success | stochastic: return @ cost | published |"; print "|---|---|---|---|---|---|---|---|---|" }
+    { printf "| [`%s`](../tasks/%s.md) | %s | %s | %d | %s | %s%s | %.0f %% | %s @ %s | %s |\n", $2, $2,
+        $1 == "table1" ? "angles" : $1 == "command" ? "commands" : "the task", $4 < 0 ? "-" : $4, $5, number($7), number($8),
+        ($4 >= 0 && $8 > $4) ? ", above its limit" : "", 100 * $10, number($11), number($12), $1 == "command" ? known[$2] : "" }
+    END { if (!rows) print "No runs of this algorithm are kept in examples/results." }'
+  echo "<!-- end of runs -->"
+  exit
+fi
 
 # page TITLE PART [LONG]: a table, and the one of long runs of the same.
 page() {
