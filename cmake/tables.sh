@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# tables.sh TOOL [check]: writes what the tool prints between the marks of the pages, `<!-- NAME -->` and `<!-- end of NAME -->`;
-# with `check` it changes nothing, and says which table is not what the tool prints.
+# tables.sh TOOL [check]: writes what the tool prints between the marks of the pages, `<!-- NAME -->` and `<!-- end of NAME -->`,
+# and begins the pages of the manual that are missing; with `check` it changes nothing, and says what is not what the tool prints.
 set -u
 tool=$(realpath "${1:-build/release/bin/redman}") mode=${2:-write}
 cd "$(dirname "$0")/.." || exit 1
@@ -32,11 +32,52 @@ table() {
   fi
 }
 
+# page PAGE COMMAND...: each block that the command prints with its marks goes between the same marks of the page. A page that is
+# missing is what the command prints.
+page() {
+  local page=$1 name
+  shift
+  "$@" > "$new/blocks" || { echo "$page: '$*' failed"; failed=1; return; }
+  if [ ! -e "$page" ]; then
+    if [ "$mode" = check ]; then
+      echo "there is no $page; bash cmake/tables.sh begins it"
+      failed=1
+    else
+      cp "$new/blocks" "$page"
+    fi
+    return
+  fi
+  for name in $(sed -n 's/^<!-- end of \(.*\) -->$/\1/p' "$new/blocks"); do
+    table "$page" "$name" sed -n "/^<!-- $name -->\$/,/^<!-- end of $name -->\$/{//!p}" "$new/blocks"
+  done
+}
+
+# links FOLDER COMMAND...: its table, whose names are links to their pages there.
+links() {
+  local folder=$1
+  shift
+  "$@" | sed "s|^. \`\([a-z0-9_]*\)\` .|\| [\`\1\`](${folder}\1.md) \||"
+}
+names() { "$tool" "$1" | awk 'NR > 1 { print $1 }'; }
+task_blocks() { "$tool" tasks "$1" --markdown && bash examples/score_table.sh --block "$1"; }
+algo_blocks() { "$tool" algos "$1" --markdown && bash examples/paper_report.sh --block "$1"; }
+
 table CONTRIBUTING.md modes bash cmake/check.sh --markdown
-table README.md algorithms "$tool" algos --markdown
-table tasks/README.md tasks "$tool" tasks --markdown
-table tasks/README.md presets "$tool" tasks --presets --markdown
+table README.md algorithms links examples/manual/algorithms/ "$tool" algos --markdown
+table examples/manual/algorithms/README.md algorithms links "" "$tool" algos --markdown
+table examples/manual/tasks/README.md tasks links "" "$tool" tasks --markdown
+table examples/manual/tasks/README.md presets "$tool" tasks --presets --markdown
 table examples/robots/README.md robots "$tool" robots --markdown
 table lib/objects/README.md objects "$tool" objects --markdown
 table examples/results/hand_tasks.md runs cat examples/results/short.md
+for list in tasks algos; do
+  folder=examples/manual/tasks blocks=task_blocks
+  [ $list = tasks ] || folder=examples/manual/algorithms blocks=algo_blocks
+  all=$(names $list)
+  for name in $all; do page "$folder/$name.md" $blocks "$name"; done
+  for found in "$folder"/[a-z]*.md; do
+    name=$(basename "$found" .md)
+    grep -qx "$name" <<< "$all" || { echo "$found: 'redman $list' has no $name"; failed=1; }
+  done
+done
 exit $failed

@@ -84,16 +84,22 @@ if [ -x "$build/bin/redman" ] && [ -f "$build/redman.map" ]; then
   # shellcheck disable=SC2086
   "$cxx" -shared -Wl,-z,muldefs $objects -Wl,--whole-archive "$library" -Wl,--no-whole-archive $third \
     -Wl,--version-script="$build/redman.map" -Wl,-soname,libredman.so.1 -o "$work/libredman.so.1" || exit 1
-  for page in README.md tasks/README.md lib/objects/README.md examples/robots/README.md examples/results/hand_tasks.md \
-    examples/results/short.md CONTRIBUTING.md cmake/tables.sh cmake/check.sh cmake/packages.sh cmake/skips.sh; do
+  for page in README.md lib/objects/README.md examples/robots/README.md examples/results/hand_tasks.md examples/results/short.md \
+    examples/results/runs.csv examples/results/scores.csv examples/results/published.csv examples/runs.sh examples/score_table.sh \
+    examples/paper_report.sh CONTRIBUTING.md cmake/tables.sh cmake/check.sh cmake/packages.sh cmake/skips.sh; do
     mkdir -p "$tree/$(dirname $page)" && cp "$root/$page" "$tree/$page"
   done
+  cp -r "$root/examples/manual" "$tree/examples"
   tables() { LD_LIBRARY_PATH=$work bash "$tree/cmake/tables.sh" "$build/bin/redman" "$@"; }
   tables check > "$work/stale" && { echo "the pages' tables do not miss the recipes' rows"; status=1; }
   tables > "$work/written" || { cat "$work/written"; status=1; }
   tables check || status=1
-  for row in 'README.md:`crpo`' 'tasks/README.md:`fenced_walk`' 'examples/robots/README.md:`one_finger`'; do
+  for row in 'README.md:[`crpo`](examples/manual/algorithms/crpo.md)' 'examples/manual/tasks/README.md:[`fenced_walk`](fenced_walk.md)' \
+    'examples/robots/README.md:`one_finger`'; do
     grep -qF "| ${row#*:} |" "$tree/${row%%:*}" || { echo "${row%%:*} got no row of ${row#*:}"; status=1; }
+  done
+  for page in tasks/fenced_walk algorithms/crpo; do
+    grep -q '^<!-- end of options -->$' "$tree/examples/manual/$page.md" || { echo "examples/manual/$page.md was not begun"; status=1; }
   done
 fi
 exit $status

@@ -1,0 +1,70 @@
+#!/usr/bin/env bash
+# Draws the pictures of the manual: of each task moments of an episode of the bundled policy, seed 0; of each algorithm the
+# learning curves of the runs that are kept.
+#   bash examples/manual/pictures.sh [NAME...]     default: all; Environment: REDMAN (the tool), OUT (examples/pictures)
+set -eu
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
+redman=${REDMAN:-$root/build/release/bin/redman} out=${OUT:-$root/examples/pictures}
+mkdir -p "$out/tasks" "$out/algorithms"
+wanted=" $* "
+wanted() { [ "$wanted" = "  " ] || case $wanted in *" $1 "*) ;; *) return 1 ;; esac }
+
+cd "$root/examples/results/runs"
+for algo in $("$redman" algos | awk 'NR > 1 { print $1 }'); do
+  [ -e "grasp.$algo.0" ] && wanted "$algo" || continue
+  runs=("grasp.$algo".?)
+  case $algo in
+    ppo | trpo) runs+=("jenga.$algo".?) ;;
+    *) runs+=(grasp.ppo.? "hand_over_safe_finger.$algo".?) ;; # PPO: without limits
+  esac
+  "$redman" plot "${runs[@]}" --out "$out/algorithms/$algo.svg" > /dev/null
+done
+
+# task, camera, moments, size, first and last control step
+while read -r task camera moments size from to; do
+  wanted "$task" || continue
+  "$redman" render --task "$task" --policy trained --camera "$camera" --strip "$moments" --from "$from" --to "$to" --size "$size" \
+    --out "$out/tasks/$task.png" > /dev/null
+done <<'T'
+hand_over_safe_finger close 4 164x123 0 36
+hand_over_safe_joint close 4 164x123 0 36
+catch_underarm_safe_finger close 4 168x126 0 60
+catch_underarm_safe_joint close 4 168x126 0 60
+grasp close 4 168x126 0 24
+reorient close 4 168x126 0 73
+hand_over_wall close 4 168x126 0 45
+jenga left 3 168x126 0 150
+pick_bottles close 3 168x126 0 78
+clean_house front 4 160x120 0 480
+bandit front 4 180x135 0 1
+two_state front 4 180x135 0 4
+lqr_line front 4 180x135 0 6
+ball_run front 4 180x135 0 240
+ball_circle front 4 180x135 0 240
+car_run front 4 180x135 0 480
+swimmer_velocity front 4 180x135 0 900
+point_goal1 front 4 180x135 0 900
+point_goal2 front 4 180x135 0 900
+point_button1 front 4 180x135 0 120
+point_button2 front 4 172x129 0 900
+car_goal1 front 4 180x135 0 900
+car_goal2 front 4 180x135 0 900
+car_button1 front 4 180x135 0 900
+car_button2 front 4 172x129 0 900
+car_circle front 3 212x159 0 480
+drone_run front 4 180x135 0 480
+drone_circle front 3 212x159 0 480
+ball_gather front 4 180x135 0 240
+car_gather front 3 212x159 0 480
+drone_gather front 3 212x159 0 480
+ball_reach front 4 180x135 0 240
+car_reach front 3 212x159 0 480
+drone_reach front 3 212x159 0 480
+hopper_velocity front 4 180x135 0 450
+walker2d_velocity front 4 180x135 0 250
+ant_velocity front 4 180x135 0 42
+ant_run front 4 180x135 0 240
+ant_circle front 3 212x159 0 900
+ant_gather front 3 212x159 0 900
+ant_reach front 3 212x159 0 900
+T
