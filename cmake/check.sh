@@ -84,6 +84,7 @@ if [ "$mode" != quick ] && [ "$mode" != release ]; then
     want "tests test_python_*" python3 python3-numpy
     want "what tests test_python_* ask of types" mypy
     want "the manual pages and test manual" help2man
+    want "the site and its test" python3-sphinx python3-myst-parser furo
     want "a case of test_occupancy_file" octomap-tools
     want "pages that turn in test_tool_pages" $viewer_packages
   }
@@ -205,7 +206,7 @@ case $mode in
     part lintian lintian --fail-on error,warning build/package/packages/*.deb
     part deb bash tests/packages/deb.sh build/package/packages build/package/bin/redman
     part wheel bash tests/packages/wheel.sh "$wheel" build/package/bin/redman
-    part reference cmake --build build/package --target docs
+    part reference cmake --build build/package --target reference
     part abi sh tests/packages/abi.sh . cc
     part manual sh tests/packages/manual.sh build/package/bin/redman build/package/manual
     part small sh tests/packages/small.sh build/small build/package

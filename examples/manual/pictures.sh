@@ -1,23 +1,25 @@
 #!/usr/bin/env bash
 # Draws the pictures of the manual: of each task moments of an episode of the bundled policy, seed 0; of each algorithm the
-# learning curves of the runs that are kept.
-#   bash examples/manual/pictures.sh [NAME...]     default: all; Environment: REDMAN (the tool), OUT (examples/pictures)
+# learning curves of the runs of examples/paper_tables.sh (PARTS="fig7 command"), where they are there.
+#   bash examples/manual/pictures.sh [NAME...]     default: all
+# Environment: REDMAN (the tool), OUT (examples/pictures), RUNS (runs/paper)
 set -eu
+shopt -s nullglob
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
-redman=${REDMAN:-$root/build/release/bin/redman} out=${OUT:-$root/examples/pictures}
+redman=${REDMAN:-$root/build/release/bin/redman} out=${OUT:-$root/examples/pictures} runs=${RUNS:-$root/runs/paper}
 mkdir -p "$out/tasks" "$out/algorithms"
 wanted=" $* "
 wanted() { [ "$wanted" = "  " ] || case $wanted in *" $1 "*) ;; *) return 1 ;; esac }
 
-cd "$root/examples/results/runs"
 for algo in $("$redman" algos | awk 'NR > 1 { print $1 }'); do
-  [ -e "grasp.$algo.0" ] && wanted "$algo" || continue
-  runs=("grasp.$algo".?)
+  [ -e "$runs/grasp.$algo.0" ] || continue
+  wanted "$algo" || continue
+  drawn=("$runs/grasp.$algo".?)
   case $algo in
-    ppo | trpo) runs+=("jenga.$algo".?) ;;
-    *) runs+=(grasp.ppo.? "hand_over_safe_finger.$algo".?) ;; # PPO: without limits
+    ppo | trpo) drawn+=("$runs/jenga.$algo".?) ;;
+    *) drawn+=("$runs/grasp.ppo".? "$runs/hand_over_safe_finger.$algo.command".?) ;; # PPO: without limits
   esac
-  "$redman" plot "${runs[@]}" --out "$out/algorithms/$algo.svg" > /dev/null
+  "$redman" plot "${drawn[@]}" --out "$out/algorithms/$algo.svg" > /dev/null
 done
 
 # task, camera, moments, size, first and last control step

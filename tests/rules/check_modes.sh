@@ -24,7 +24,7 @@ grep -v '^#' tests/skips.txt | while read -r name _; do
   case $name in
     *.*) pattern=$(echo "$name" | sed 's/^\*\///; s/\..*//'); grep -rqE "^(TEST|TEST_F|TEST_P)\($pattern," tests ;;
     language_*) [ -d "examples/${name#language_}" ] ;;
-    arm64_short | abi | generators) grep -q "NAME $name " tests/CMakeLists.txt ;;
+    arm64_short | abi | generators | site) grep -q "NAME $name " tests/CMakeLists.txt ;;
     *) ls tests/*/$name.* > /dev/null 2>&1 ;;
   esac || echo "tests/skips.txt excuses $name, which is no test"
 done | grep . && failed=1

@@ -1,0 +1,96 @@
+"""The site: manual, pages of the tree and Python's reference, by Sphinx; cmake/packaging/site/site.sh calls it."""
+import os
+import re
+from pathlib import Path
+
+stage = Path(os.environ["RDM_STAGE"])
+project = "redman"
+author = "redman's authors"
+copyright = "redman's authors, Apache-2.0"
+version = release = os.environ["RDM_VERSION"]
+extensions = ["myst_parser", "sphinx.ext.autodoc"]
+root_doc = "README"
+# Pages for users; those of the tests' data and of packages' scripts are read where they are.
+include_patterns = ["*.md", "examples/**.md", "tasks/*.md", "algos/*.md", "lib/**.md", "capi/**.md", "cmake/**.md", "include/**.md", "tests/*.md", "tests/hard/*.md"]
+exclude_patterns = ["tests/old", "**/node_modules", "examples/results/short.md"]
+myst_heading_anchors = 4
+suppress_warnings = ["myst.header"]  # a page may begin with its table
+html_theme = "furo"
+html_title = f"redman {version}"
+html_copy_source = False
+html_show_sphinx = False
+html_theme_options = {"footer_icons": [], "source_repository": ""}
+autodoc_member_order = "bysource"
+autodoc_typehints = "signature"
+autodoc_default_options = {"members": True}
+
+
+def chapters():
+    """Pages by section, in the order in which the manual's first page names them."""
+    section, out, seen = "Manual", {}, {root_doc}
+    for line in (stage / "examples/manual/README.md").read_text(encoding="utf-8").splitlines():
+        if line.startswith("## "):
+            section = line[3:]
+        for target in re.findall(r"\]\(([^)#]*)\.md[^)]*\)", line) if line.startswith("|") else []:
+            name = os.path.normpath(os.path.join("examples/manual", target))
+            if name not in seen and (stage / f"{name}.md").exists():
+                seen.add(name)
+                out.setdefault(section, []).append(name)
+    return out
+
+
+def contents(pages, caption=None):
+    lines = ["", "```{toctree}", ":hidden:", ":maxdepth: 1"] + ([f":caption: {caption}"] if caption else [])
+    return "\n".join(lines + [""] + pages + ["```", ""])
+
+
+def add_contents(app, name, source):
+    """The side bar. It names every page, those behind the manual's by folders."""
+    tree = chapters()
+    if name == root_doc:
+        named = {page for pages in tree.values() for page in pages} | {root_doc, "c-reference", "python-reference"}
+        rest = sorted(page for page in app.env.found_docs - named if not page.startswith(BEHIND))
+        source[0] += "".join(contents(pages, section) for section, pages in tree.items())
+        source[0] += contents(["c-reference", "python-reference"] + rest, "More")
+    elif name.endswith("/README") and name[:-6] in BEHIND:
+        source[0] += contents(sorted(page[len(name) - 6:] for page in app.env.found_docs
+                                     if page.startswith(name[:-6]) and page != name and "/" not in page[len(name) - 6:]))
+
+
+# Folders whose pages stand behind their first one.
+BEHIND = ("examples/results/", "examples/manual/tasks/", "examples/manual/algorithms/")
+
+
+def plain_links(app, name, source):
+    """Links to folders and to files that are no pages lead to the words alone: a page stands for itself, without the tree."""
+    folder = (stage / name).parent
+
+    def kept(match):
+        target = match[2].split("#")[0]
+        path = folder / target
+        gone = target and not re.match(r"[a-z]+:", target) and (path.is_dir() or Path(target).name.startswith("."))
+        return match[1] if gone else match[0]
+
+    source[0] = re.sub(r"\[((?:[^][]|`[^`]*`)*)\]\(([^)\s]*)\)", kept, source[0])
+
+
+def code_in_docstrings(app, what, name, obj, options, lines):
+    """Docstrings are plain text with code set in, as a terminal shows them: what is set in is code, and no more is markup."""
+    if what == "module":  # stands at the margin, where Sphinx takes the code's for the text's
+        lines[:] = (obj.__doc__ or "").splitlines()
+    out, code = [], False
+    for line in lines:
+        inner = line.startswith("    ") and line.strip()
+        if inner and not code:
+            out += ["", "::", ""]
+        if code and line.strip() and not inner:
+            out += [""]
+        code = bool(inner) or (code and not line.strip())
+        out.append(line if inner else re.sub(r"([*_`|\\])", r"\\\1", line))
+    lines[:] = out
+
+
+def setup(app):
+    app.connect("source-read", plain_links)
+    app.connect("source-read", add_contents)
+    app.connect("autodoc-process-docstring", code_in_docstrings)
