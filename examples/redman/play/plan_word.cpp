@@ -1,5 +1,6 @@
 #include "play/plan_word.hpp"
 
+#include <redman/plan.h>
 #include <redman/sense.h>
 
 #include "common/names.hpp"
