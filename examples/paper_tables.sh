@@ -132,22 +132,24 @@ of_second() {
     awk -F, 'NR == 1 { for (i = 2; i <= NF; ++i) if ($i >= 0) k = i; limit = $k } NR == 2 { print k ? limit "," $k : "," }'
 }
 
-header="name,part,task,algorithm,seed,limit,return,cost,cost_stderr,falls,success,length,sampled_return,sampled_cost,sampled_over,train_return,train_cost,train_over,train_swing,env_steps,wall_seconds,seconds_to_half,second_limit,second_cost,flags,violations,policy_sha256"
+header="name,part,task,algorithm,seed,limit,return,cost,cost_stderr,falls,success,length,sampled_return,sampled_cost,sampled_over,train_return,train_cost,train_over,train_swing,env_steps,wall_seconds,seconds_to_half,second_limit,second_cost,flags,violations,policy_sha256,return_stderr,over,cost_cvar,sampled_return_stderr,sampled_cost_stderr"
 rows | while read -r name part task algo seed n flags; do
   f=$out/$name.json s=$out/$name.sampled.json
   if [ ! -s "$f" ] || [ ! -s "$s" ]; then continue; fi
   limit=$(value cost_limit "$f")
   case $limit in [0-9]*) ;; *) limit=-1 ;; esac
   tail=$(last_tenth "$out/$name/progress.csv" "$limit")
-  echo "$name,$part,$task,$algo,$seed,$limit,$(value return "$f"),$(value cost "$f"),$(value cost_stderr "$f"),$(value fall_rate "$f"),$(value success_rate "$f"),$(value length "$f"),$(value return_mean "$s"),$(value cost_mean "$s"),$(value violation_rate "$s"),$tail,$(value env_steps "$f"),$(wall_seconds "$out/$name/progress.csv"),$(reached "$out/$name/progress.csv"),$(of_second "$out/$name.mean.json"),$flags,$(value training_violating_steps "$f"),$(sha256sum < "$out/$name/policy.rdm" | cut -d" " -f1)"
+  echo "$name,$part,$task,$algo,$seed,$limit,$(value return "$f"),$(value cost "$f"),$(value cost_stderr "$f"),$(value fall_rate "$f"),$(value success_rate "$f"),$(value length "$f"),$(value return_mean "$s"),$(value cost_mean "$s"),$(value violation_rate "$s"),$tail,$(value env_steps "$f"),$(wall_seconds "$out/$name/progress.csv"),$(reached "$out/$name/progress.csv"),$(of_second "$out/$name.mean.json"),$flags,$(value training_violating_steps "$f"),$(sha256sum < "$out/$name/policy.rdm" | cut -d" " -f1),$(value return_stderr "$f"),$(value violation_rate "$f"),$(value cost_cvar "$f"),$(value return_stderr "$s"),$(value cost_stderr "$s")"
 done > "$results/runs.csv.new"
-# runs of other calls stay
+# runs of other calls stay; columns that are younger than their rows are empty
 {
   echo "$header"
   {
     cat "$results/runs.csv.new"
     if [ -s "$results/runs.csv" ]; then
-      awk -F, 'NR == FNR { seen[$1] = 1; next } FNR > 1 && !($1 in seen)' "$results/runs.csv.new" "$results/runs.csv"
+      awk -F, -v header="$header" 'FILENAME == ARGV[1] { seen[$1] = 1; next }
+        FNR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; n = split(header, name, ","); next }
+        !($1 in seen) { for (i = 1; i <= n; ++i) printf "%s%s", (name[i] in at) ? $at[name[i]] : "", i < n ? "," : "\n" }' "$results/runs.csv.new" "$results/runs.csv"
     fi
   } | sort
 } > "$results/runs.csv.part"
