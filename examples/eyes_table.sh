@@ -96,11 +96,11 @@ row() {
   shift
   awk -v label="$label" -v n=$# -v ret="$(mean return_mean "$@")" -v rets="$(each return_mean "$@")" -v cost="$(mean cost_mean "$@")" \
     -v costs="$(each cost_mean "$@")" -v limit="$(value cost_limits "$1")" -v falls="$(mean fall_rate "$@")" \
-    -v success="$(mean success_rate "$@")" "$marked"'BEGIN {
+    -v success="$(mean success_rate "$@")" "$marked$deviation"'BEGIN {
       m = split(costs, c, ", "); costs = ""
       for (i = 1; i <= m; ++i) costs = costs (i > 1 ? ", " : "") marked(c[i], limit)
-      printf "| %s | %s%s | %s%s | %.1f %% | %.1f %% |\n", label, ret, (n > 1 ? " (" rets ")" : ""), marked(cost, limit),
-        (n > 1 ? " (" costs ")" : ""), 100 * falls, 100 * success }'
+      printf "| %s | %s%s | %s%s | %.1f %% | %.1f %% |\n", label, ret, (n > 1 ? deviation(rets) " (" rets ")" : ""), marked(cost, limit),
+        (n > 1 ? deviation(costs) " (" costs ")" : ""), 100 * falls, 100 * success }'
 }
 
 echo "| task (limit) | way | return (each seed) | cost (each seed) | falls | success |"

@@ -58,8 +58,8 @@ each() {
   local key=$1 limit=$2
   shift 2
   for f in "$@"; do value "$key" "$f"; done |
-    awk -v limit="$limit" '{ s += $1; t = t (NR > 1 ? ", " : "") sprintf("%.4g", $1) (limit != "" && $1 > limit + 0 ? "!" : "") }
-      END { printf "%.4g (%s)", s / NR, t }'
+    awk -v limit="$limit" "$deviation"'{ s += $1; t = t (NR > 1 ? ", " : "") sprintf("%.4g", $1) (limit != "" && $1 > limit + 0 ? "!" : "") }
+      END { printf "%.4g%s (%s)", s / NR, deviation(t), t }'
 }
 percent() {
   local key=$1

@@ -67,13 +67,13 @@ rows | while read -r kind name task object policy limit seed n; do
   echo "$task $object $policy $limit $(value $r "$f") $(value $c "$f") $(value $l "$f") $(value fall_rate "$f")" \
     "$(value success_rate "$f") $([ "$kind" = train ] && value env_steps "$f" || echo 0)" \
     "$([ "$kind" = train ] && value wall_seconds "$f" || echo 0)"
-done | awk "$marked"'{ key = $1 " | " $2 " | " $3 " | " $4
+done | awk "$marked$deviation"'{ key = $1 " | " $2 " | " $3 " | " $4
   if (!(key in n)) order[++count] = key
   i = ++n[key]; for (k = 5; k <= 11; ++k) { sum[key, k] += $k }
   each[key] = each[key] (i > 1 ? ", " : "") sprintf("%.1f", $5); costs[key] = costs[key] (i > 1 ? ", " : "") marked($6, $4) }
   END { for (j = 1; j <= count; ++j) { k = order[j]; m = n[k]
-    printf "| %s | %.1f", k, sum[k, 5] / m; if (m > 1) printf " (%s)", each[k]
-    printf " | %s", (m > 1 ? sprintf("%.1f (%s)", sum[k, 6] / m, costs[k]) : costs[k])
+    printf "| %s | %.1f", k, sum[k, 5] / m; if (m > 1) printf "%s (%s)", deviation(each[k]), each[k]
+    printf " | %s", (m > 1 ? sprintf("%.1f%s (%s)", sum[k, 6] / m, deviation(costs[k]), costs[k]) : costs[k])
     printf " | %.0f | %.0f %% | %.0f %% | %.2g M | %.0f |\n", sum[k, 7] / m, 100 * sum[k, 8] / m, 100 * sum[k, 9] / m,
       sum[k, 10] / m / 1e6, sum[k, 11] / m } }'
 echo

@@ -70,15 +70,15 @@ for task in $tasks; do
     name="\`$algo\`" ending=json
     [ "$kind" = mean ] || { name="$name, sampled" ending=sampled.json; }
     for seed in $seeds; do numbers "$out/$task.$algo.$seed.$ending" "$kind"; done |
-      awk -v head="$head" -v floors="$floors" -v name="$name" "$marked"'
+      awk -v head="$head" -v floors="$floors" -v name="$name" "$marked$deviation"'
       function number(x) { return sprintf(x < 1e3 ? "%.3g" : "%.0f", x) }
       { for (k = 1; k <= 7; ++k) sum[k] += $k
         limit = $8
         each = each (NR > 1 ? ", " : "") number($1); costs = costs (NR > 1 ? ", " : "") marked($2, $8) }
       END { if (NR == 0) exit
         if (head != "") head = head " (" (limit ~ /^[0-9]/ ? limit + 0 : "-") ")"
-        printf "| %s | %s%s | %s (%s) | %.3g (%s) | %.0f | %.0f %% | %.0f %% |", head, floors, name,
-          number(sum[1] / NR), each, sum[2] / NR, costs, sum[3] / NR, 100 * sum[4] / NR, 100 * sum[5] / NR
+        printf "| %s | %s%s | %s%s (%s) | %.3g%s (%s) | %.0f | %.0f %% | %.0f %% |", head, floors, name,
+          number(sum[1] / NR), deviation(each), each, sum[2] / NR, deviation(costs), costs, sum[3] / NR, 100 * sum[4] / NR, 100 * sum[5] / NR
         if (sum[6] > 0) printf " %.2g M | %.0f |\n", sum[6] / NR / 1e6, sum[7] / NR; else print " | |" }'
     floors=" | | | | " head=""
   done; done

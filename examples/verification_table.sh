@@ -88,12 +88,12 @@ for task in $tasks; do
   "$redman" baseline --task "$task" --seed 1000000 --markdown | awk -F'|' 'NR > 2 {
     split($4, r, " "); gsub(/ /, "", $3); printf "|%s| %s | | | %s |%s| | |\n", $2, $3, r[1], $5 }'
   echo "| \`$task\` | $(known "$task") | | | | | | |"
-  awk -F, -v task="$task" "$marked"'$1 == task { if (!($2 in n)) order[++count] = $2
+  awk -F, -v task="$task" "$marked$deviation"'$1 == task { if (!($2 in n)) order[++count] = $2
       i = ++n[$2]; for (k = 4; k <= 11; ++k) sum[$2, k] += $k
       each[$2] = each[$2] (i > 1 ? ", " : "") sprintf("%.4g", $4); costs[$2] = costs[$2] (i > 1 ? ", " : "") marked($5, $8) }
     END { for (j = 1; j <= count; ++j) { a = order[j]; m = n[a]
-      printf "| `%s` | %s | %.4g (%s) | %.3g (%s) | %.4g | %.3g | %.2g M | %.0f |\n", task, a, sum[a, 4] / m, each[a],
-        sum[a, 5] / m, costs[a], sum[a, 6] / m, sum[a, 7] / m, sum[a, 10] / m / 1e6, sum[a, 11] / m } }' "$out/rows.csv"
+      printf "| `%s` | %s | %.4g%s (%s) | %.3g%s (%s) | %.4g | %.3g | %.2g M | %.0f |\n", task, a, sum[a, 4] / m, deviation(each[a]), each[a],
+        sum[a, 5] / m, deviation(costs[a]), costs[a], sum[a, 6] / m, sum[a, 7] / m, sum[a, 10] / m / 1e6, sum[a, 11] / m } }' "$out/rows.csv"
 done
 echo
 echo "$over_note"
