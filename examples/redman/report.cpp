@@ -155,7 +155,7 @@ Json ranking_json(const TaskReport& t) {
 
 // "12.3 +- 0.4", of one run without the deviation.
 std::string with_deviation(double mean, double deviation) {
-  return format("%.4g", mean) + (std::isnan(deviation) ? "" : format(" +- %.2g", deviation));
+  return format("%.4g", mean) + (std::isnan(deviation) ? "" : " +- " + error_text(deviation));
 }
 
 Report run_report(const ReportFlags& flags) {

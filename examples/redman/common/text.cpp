@@ -20,6 +20,10 @@ std::string format(const char* pattern, ...) {
   return out;
 }
 
+std::string error_text(double value) {
+  return format(std::abs(value) >= 99.5 ? "%.0f" : "%.2g", value);
+}
+
 std::string number_text(double value) {
   for (int digits = 6; digits < 17; ++digits) {
     std::string s = format("%.*g", digits, value);

@@ -11,6 +11,9 @@ namespace tool {
 // A number as short as it reads back to the same double: "40", "0.1".
 std::string number_text(double value);
 
+// An error or deviation in two digits, without any behind the point where it is large: "0.54", "120".
+std::string error_text(double value);
+
 // The text as a terminal may have it: control characters but '\n' and '\t' become '?', bytes that are no
 // UTF-8 become U+FFFD.
 std::string printable(const std::string& text);

@@ -89,15 +89,16 @@ std::vector<std::string> remarks_of(const Summary& s, const Spread& spread, cons
   if (!same.empty()) out.push_back("the same in every episode, so without an interval: " + same);
   for (size_t k = 0; k < costs.size(); ++k)
     if (limits[k] >= 0 && s.cost_std[k] > limits[k] && episodes < kManyEpisodes)
-      out.push_back(format(
-          "the deviation of %s, %.4g, is above its limit, %s: its mean is known to +- %.2g; "
-          "--episodes %d says more",
-          costs[k].c_str(), s.cost_std[k], number_text(limits[k]).c_str(), s.cost_stderr[k], kManyEpisodes));
+      out.push_back(
+          format("the deviation of %s, %.4g, is above its limit, %s: its mean is known to +- %s; "
+                 "--episodes %d says more",
+                 costs[k].c_str(), s.cost_std[k], number_text(limits[k]).c_str(),
+                 error_text(s.cost_stderr[k]).c_str(), kManyEpisodes));
   return out;
 }
 
 std::string measured(double mean, double error) {
-  return std::isnan(error) ? format("%.3f", mean) : format("%.3f +- %.2g", mean, error);
+  return std::isnan(error) ? format("%.3f", mean) : format("%.3f +- ", mean) + error_text(error);
 }
 
 void put_spread(Json& json, const Spread& s) {

@@ -30,7 +30,7 @@ std::string spread(const Items& items, Value value) {
   Sample values;
   for (const auto& i : items) values.push_back(value(i));
   std::string out = short_text(mean_of(values));
-  if (values.size() > 1) out += format(" <small>&plusmn; %.2g</small>", deviation_of(values));
+  if (values.size() > 1) out += " <small>&plusmn; " + error_text(deviation_of(values)) + "</small>";
   return out;
 }
 
