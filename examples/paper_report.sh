@@ -1,37 +1,67 @@
 #!/usr/bin/env bash
-# The tables of examples/paper_tables.sh out of the runs that it kept, without running anything:
+# The tables of examples/paper_tables.sh out of the runs that it kept, without training anything:
 #   bash examples/paper_report.sh [RESULTS]      RESULTS: the folder with runs.csv, default examples/results
 # writes RESULTS/table1.md, command.md (with costs of commanded targets), fig7.md, second.md, shield.md, claims.md and short.md, which
 # hand_tasks.md has;
 #   bash examples/paper_report.sh --block ALGORITHM
 # prints the block `runs` of the algorithm's page in the manual.
+# Environment: REDMAN (the tool, which tells algorithms apart).
 set -eu
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 block=
 [ "${1:-}" != --block ] || { block=$2; shift 2; }
 results=${1:-$root/examples/results}
+redman=${REDMAN:-$root/build/release/bin/redman}
+[ -n "$block" ] || [ -x "$redman" ] || { echo "there is no $redman: build it, or say where it is with REDMAN" >&2; exit 1; }
 # For the awk programs of the tables: a figure as text.
 number='function number(x) { return sprintf(x >= 1e3 ? "%.0f" : "%.3g", x) }
+function spread(sd) { return sd == "-" ? "" : sprintf(sd >= 99.5 ? " +- %.0f" : " +- %.2g", sd) }
 '
 
 # means PART: one line for each task and algorithm: task algo limit seeds steps return cost falls success sampled_return
 # sampled_cost sampled_over train_return train_cost train_over train_swing wall returns costs seeds_over feasible
-# second_limit second_cost seconds_to_half
+# second_limit second_cost seconds_to_half return_sd cost_sd; the last two, over seeds, are "-" of one.
 means() {
   awk -F, -v part="$1" "$number"'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next }
     $at["part"] == part { k = $at["task"] SUBSEP $at["algorithm"]
       if (!(k in n)) { order[++count] = k; limit[k] = $at["limit"] + 0 }
       i = ++n[k]; split("env_steps return cost falls success sampled_return sampled_cost sampled_over train_return train_cost train_over train_swing wall_seconds", key, " ")
       for (j = 1; j <= 13; ++j) sum[k, j] += $at[key[j]]
+      value[k, i, 2] = $at["return"]; value[k, i, 3] = $at["cost"]
       if ($at["seconds_to_half"] != "") { half[k] += $at["seconds_to_half"]; ++halves[k] }
       second[k] = $at["second_limit"]; more[k] += $at["second_cost"]
       over = limit[k] >= 0 && $at["cost"] > limit[k]; overs[k] += over
       each[k] = each[k] (i > 1 ? "," : "") number($at["return"]); costs[k] = costs[k] (i > 1 ? "," : "") number($at["cost"]) (over ? "!" : "") }
+    function sd(k, j, i, s) { for (i = 1; i <= n[k]; ++i) s += (value[k, i, j] - sum[k, j] / n[k]) ^ 2; return n[k] > 1 ? sprintf("%.4g", sqrt(s / (n[k] - 1))) : "-" }
     END { for (c = 1; c <= count; ++c) { k = order[c]; split(k, name, SUBSEP); m = n[k]
       printf "%s %s %s %d", name[1], name[2], limit[k], m
       for (j = 1; j <= 13; ++j) printf " %.6g", sum[k, j] / m
-      printf " %s %s %d %d %s %.3g %s\n", each[k], costs[k], overs[k] + 0, (limit[k] < 0 || sum[k, 3] / m <= limit[k]) && (second[k] == "" || more[k] / m <= second[k]),
-        second[k] == "" ? "-" : second[k], more[k] / m, halves[k] ? half[k] / halves[k] : "-" } }' "$results/runs.csv"
+      printf " %s %s %d %d %s %.3g %s %s %s\n", each[k], costs[k], overs[k] + 0, (limit[k] < 0 || sum[k, 3] / m <= limit[k]) && (second[k] == "" || more[k] / m <= second[k]),
+        second[k] == "" ? "-" : second[k], more[k] / m, halves[k] ? half[k] / halves[k] : "-", sd(k, 2), sd(k, 3) } }' "$results/runs.csv"
+}
+
+# letters PART: TASK ALGO GROUPS, of the returns of the seeds of a task; "-" of one seed.
+letters() {
+  local task
+  for task in $(means "$1" | cut -d" " -f1 | sort -u); do
+    "$redman" compare "$results/runs.csv" --where "part=$1" --where "task=$task" --markdown |
+      awk -F' *[|] *' -v task="$task" 'NR > 2 { gsub("`", "", $2); print task, $2, $8 }'
+  done
+}
+
+# together PART: of the algorithms that have runs of all tasks, each return over the best algorithm's mean on its task.
+together() {
+  local scores
+  scores=$(mktemp)
+  means "$1" | awk -F'[ ]' 'NR == FNR { ++tasks[$2]; if (!($1 in best) || $6 > best[$1]) best[$1] = $6; if (!($1 in seen)) { seen[$1] = 1; ++count }; next }
+    FNR == 1 { split($0, name, ","); for (i in name) at[name[i]] = i; print "task,algorithm,score"; next }
+    { split($0, cell, ","); t = cell[at["task"]]; a = cell[at["algorithm"]]
+      if (cell[at["part"]] == part && count > 1 && tasks[a] == count) print t "," a "," cell[at["return"]] / best[t] }' part="$1" - part="$1" "$results/runs.csv" > "$scores"
+  [ "$(wc -l < "$scores")" -lt 2 ] || {
+    printf '\n## All tasks together\n\nEach return over the best mean of its task; IQM: the interquartile mean of all runs.\n\n'
+    "$redman" compare "$scores" --over task --value score --markdown
+  }
+  rm "$scores"
 }
 
 # The paper's Table 1 as TASK ALGO RETURN COST.
@@ -59,15 +89,18 @@ order="hand_over_safe_finger hand_over_safe_joint catch_underarm_safe_finger cat
 
 # table PART: Markdown, feasible first, by the return of the mean action; the policy with its noise, and training.
 table() {
-  local task
-  echo "| task (limit) | algorithm | return (each seed) | cost (each seed) | second cost (limit) | falls | success | sampled | episodes over | training's last tenth | epochs over | steps | wall s | half succeed after, s | published |"
-  echo "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|"
+  local task groups
+  groups=$(letters "$1" | sed 's/^/L /')
+  echo "| task (limit) | algorithm | group | return (each seed) | cost (each seed) | second cost (limit) | falls | success | sampled | episodes over | training's last tenth | epochs over | steps | wall s | half succeed after, s | published |"
+  echo "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|"
   for task in $order; do
-    { published | sed 's/^/P /'; means "$1" | awk -v t="$task" '$1 == t' | sort -k21,21nr -k6,6nr; } |
+    { published | sed 's/^/P /'; echo "$groups"; means "$1" | awk -v t="$task" '$1 == t' | sort -k21,21nr -k6,6nr; } |
       awk "$number"'$1 == "P" { known[$2, $3] = $4 " @ " $5; next }
+        NF == 0 { next }
+        $1 == "L" { letters[$2, $3] = $4; next }
         { gsub(",", ", ", $18); gsub(",", ", ", $19)
-          printf "| `%s` (%s) | `%s` | %s", $1, $3 < 0 ? "-" : $3, $2, number($6); if ($4 > 1) printf " (%s)", $18
-          printf " | %s%s", number($7), $21 ? "" : "!"; if ($4 > 1) printf " (%s)", $19
+          printf "| `%s` (%s) | `%s` | %s | %s%s", $1, $3 < 0 ? "-" : $3, $2, letters[$1, $2], number($6), spread($25); if ($4 > 1) printf " (%s)", $18
+          printf " | %s%s%s", number($7), $21 ? "" : "!", spread($26); if ($4 > 1) printf " (%s)", $19
           if ($22 == "-") printf " | "; else printf " | %s (%s)", $23, $22
           printf " | %.0f %% | %.0f %% | %s @ %s | %.0f %% | %s @ %s | %.0f %% | %.3g M | %.0f | %s | %s |\n", 100 * $8, 100 * $9, number($10),
             number($11), 100 * $12, number($13), number($14), 100 * $15, $5 / 1e6, $17, $24 == "-" ? "" : sprintf("%.0f", $24), (($1, $2) in known) ? known[$1, $2] : "" }'
@@ -77,7 +110,9 @@ table() {
 note() {
   cat <<'T'
 
-Feasible first, by return. `return`, `cost`: the mean action, 100 fresh episodes of each seed, policy chosen on others by a
+Feasible first, by return; `group`: algorithms without a common letter differ in return, as the 95 % interval of the difference of their
+seeds' interquartile means leaves 0 out (`redman compare`; each pair for itself, and too narrow for fewer than 5 seeds). `+-` is the
+standard deviation over seeds. `return`, `cost`: the mean action, 100 fresh episodes of each seed, policy chosen on others by a
 standard error within the limit; `!`: over it. `sampled`: the same policy with its noise, `episodes over`: of those, over a limit. `training`: the
 policy of that moment with its noise; `half succeed after`: seconds of training, one thread; `epochs over`: whose mean cost was over the limit. `published`: the paper's Table 1, 100 M steps.
 T
@@ -91,7 +126,7 @@ short() {
     function cost_of(x, limit) { return number(x) (limit >= 0 && x > limit ? "!" : "") }
     $1 == "P" { published[$2, $3] = $4; its[$2, $3] = $5; next }
     { limit[$2] = $4; seeds[$2, $3] = $5; known[$3] = 1
-      cell[$2, $3] = sprintf("%s @ %s, %.0f %%", number($7), cost_of($8, $4), 100 * $10)
+      cell[$2, $3] = sprintf("%s%s @ %s%s, %.0f %%", number($7), spread($26), cost_of($8, $4), spread($27), 100 * $10)
       sampled[$2, $3] = number($11) " @ " cost_of($12, $4) }
     END { n = split(tasks, task, " "); m = 0
       for (i = 1; i <= n; ++i) if (task[i] in limit) column[++m] = task[i]
@@ -108,8 +143,11 @@ short() {
 }
 
 claims() {
-  { means command | sed 's/^/T /'; means fig7 | sed 's/^/F /'; } | awk '
-    { k = $2 SUBSEP $3; ret[k] = $7; cost[k] = $8; limit[k] = $4; tcost[k] = $15; swing[k] = $17; ok[k] = $22; there[k] = 1 }
+  { letters command | sed 's/^/L /'; means command | sed 's/^/T /'; means fig7 | sed 's/^/F /'; } | awk "$number"'
+    $1 == "L" { group[$2, $3] = $4; next }
+    { k = $2 SUBSEP $3; ret[k] = $7; cost[k] = $8; limit[k] = $4; tcost[k] = $15; swing[k] = $17; ok[k] = $22; there[k] = 1
+      R[k] = sprintf("%.1f%s", $7, spread($26)); C[k] = sprintf("%.1f%s", $8, spread($27)) }
+    function alike(a, b) { return group[a] ~ /[a-z]/ && group[b] ~ "[" group[a] "]" }
     function at(task, algo) { return task SUBSEP algo }
     function row(name, verdict, figures) { printf "| %s | %s | %s |\n", name, verdict, figures }
     function all(verdicts) { return verdicts ~ /0/ ? (verdicts ~ /1/ ? "in part" : "contradicted") : (verdicts == "" ? "not measured" : "yes") }
@@ -120,20 +158,22 @@ claims() {
       v = f = ""
       for (i = 1; i <= nt; ++i) { k = at(throws[i], "cpo"); if (!there[k]) continue
         v = v (tcost[k] <= limit[k] && cost[k] <= limit[k] ? 1 : 0)
-        f = f sprintf("%s%s: %.1f, in training %.1f of %d", f == "" ? "" : "; ", throws[i], cost[k], tcost[k], limit[k]) }
+        f = f sprintf("%s%s: %s, in training %.1f of %d", f == "" ? "" : "; ", throws[i], C[k], tcost[k], limit[k]) }
       row("CPO ends within the limit in all four throws", all(v), f)
       v = f = ""
       for (i = 2; i <= nt; i += 2) { best = ""
         for (j = 1; j <= na; ++j) { k = at(throws[i], algos[j]); if (there[k] && ok[k] && (best == "" || ret[k] > ret[at(throws[i], best)])) best = algos[j] }
         k = at(throws[i], "ppo_lag"); if (best == "" || !there[k]) continue
-        v = v (best == "ppo_lag" ? 1 : 0)
-        f = f sprintf("%s%s: %s %.1f @ %.1f, ppo_lag %.1f @ %.1f", f == "" ? "" : "; ", throws[i], best, ret[at(throws[i], best)], cost[at(throws[i], best)], ret[k], cost[k]) }
+        b = at(throws[i], best); v = v (b == k || alike(b, k) ? 1 : 0)
+        f = f sprintf("%s%s: ", f == "" ? "" : "; ", throws[i])
+        if (b != k) f = f sprintf("%s %s @ %s, %s ", best, R[b], C[b], alike(b, k) ? "not told apart from" : "more than")
+        f = f sprintf("ppo_lag %s @ %s", R[k], C[k]) }
       row("PPO-Lag has the most return in Safe Joint (there above the limit)", all(v), f)
       v = f = ""
       n = split("jenga pick_bottles", props, " ")
       for (i = 1; i <= n; ++i) { a = at(props[i], "ppo_lag"); b = at(props[i], "ppo"); if (!there[a] || !there[b]) continue
         v = v (ret[a] > 1.5 * ret[b] ? 1 : 0)
-        f = f sprintf("%s%s: PPO-Lag %.0f @ %.0f, PPO %.0f @ %.0f", f == "" ? "" : "; ", props[i], ret[a], cost[a], ret[b], cost[b]) }
+        f = f sprintf("%s%s: PPO-Lag %s @ %s, PPO %s @ %s", f == "" ? "" : "; ", props[i], R[a], C[a], R[b], C[b]) }
       row("PPO-Lag is far ahead of PPO in return in Jenga and Pick Bottles", all(v), f)
       v = f = ""
       for (i = 1; i <= nt; ++i) { a = at(throws[i], "focops"); b = at(throws[i], "ppo_lag"); if (!there[a] || !there[b]) continue
@@ -148,7 +188,7 @@ claims() {
       v = f = ""
       for (i = 1; i <= nt; ++i) { k = at(throws[i], "ipo"); if (!there[k]) continue
         v = v (tcost[k] > limit[k] || cost[k] > limit[k] ? 1 : 0)
-        f = f sprintf("%s%s: %.1f @ %.1f, in training %.1f of %d", f == "" ? "" : "; ", throws[i], ret[k], cost[k], tcost[k], limit[k]) }
+        f = f sprintf("%s%s: %s @ %s, in training %.1f of %d", f == "" ? "" : "; ", throws[i], R[k], C[k], tcost[k], limit[k]) }
       row("IPO needs a start within the limit (these start above it in the finger tasks, at it or below in the joint ones)", all(v), f)
     }'
 }
@@ -175,6 +215,7 @@ page() {
   table "$2"
   note
   [ -n "${3:-}" ] || return 0
+  together "$2"
   [ -z "$(means "$3")" ] || { echo; echo "## 100 M steps"; echo; table "$3"; }
 }
 page "Table 1" table1 long > "$results/table1.md"

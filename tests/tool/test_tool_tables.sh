@@ -10,7 +10,7 @@ results=examples/results
 again=$(mktemp -d)
 trap 'rm -rf "$again"' EXIT
 cp "$results/runs.csv" "$again"
-bash examples/paper_report.sh "$again"
+REDMAN=$tool bash examples/paper_report.sh "$again"
 for table in table1 command fig7 second shield claims short; do
   cmp "$again/$table.md" "$results/$table.md" || lost="$lost $results/$table.md is not what its runs.csv makes"
 done
