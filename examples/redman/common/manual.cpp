@@ -341,8 +341,8 @@ std::string learner_defaults(int32_t index) {
     ++count;
   }
   if (count == 0) return "";
-  return '\n' + folded_away(format("%zu defaults of algorithms that this task sets (`ALGORITHM:KEY`: for one "
-                                   "alone)",
+  return '\n' + folded_away(format("%zu defaults that this task sets (<code>NAME:KEY</code>: of that "
+                                   "algorithm, or of the shield, alone)",
                                    count),
                             table.markdown());
 }
