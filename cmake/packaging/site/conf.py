@@ -71,7 +71,7 @@ def plain_links(app, name, source):
         gone = target and not re.match(r"[a-z]+:", target) and (path.is_dir() or Path(target).name.startswith("."))
         return match[1] if gone else match[0]
 
-    source[0] = re.sub(r"\[((?:[^][]|`[^`]*`)*)\]\(([^)\s]*)\)", kept, source[0])
+    source[0] = re.sub(r"\[([^][\n]*)\]\(([^)\s]*)\)", kept, source[0])
 
 
 def code_in_docstrings(app, what, name, obj, options, lines):
