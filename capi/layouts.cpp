@@ -16,8 +16,8 @@ void Layout::list(uint64_t hash, const rdm_field* fields, int32_t count) {
 }
 
 void Layout::end() {
+  const std::lock_guard lock(g_mutex);  // before link_, which the neighbours write
   if (!link_) return;
-  const std::lock_guard lock(g_mutex);
   *link_ = next_;
   if (next_) next_->link_ = link_;
   link_ = nullptr;
