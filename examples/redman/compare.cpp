@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <memory>
 
 #include "commands.hpp"
@@ -38,20 +40,34 @@ std::vector<Scored> read_scores(CompareFlags flags) {
   return scores;
 }
 
-Json pairs_json(const std::vector<Scored>& scores, bool less) {
+// The intervals of the differences of each two rows, of which each takes as many draws as all else of a row.
+class Differences {
+ public:
+  explicit Differences(const std::vector<Strata>& runs) : runs_(runs) {}
+  const Interval& operator()(size_t i, size_t j) {
+    const auto [at, first] = found_.try_emplace({i, j});
+    if (first) at->second = difference_interval(runs_[i], runs_[j]);
+    return at->second;
+  }
+
+ private:
+  const std::vector<Strata>& runs_;
+  std::map<std::pair<size_t, size_t>, Interval> found_;
+};
+
+Json pairs_json(const std::vector<Scored>& scores, bool less, Differences& differences) {
   Json pairs = Json::array();
   if (scores.size() > kMostGrouped) return pairs;
   for (size_t i = 0; i < scores.size(); ++i)
     for (size_t j = i + 1; j < scores.size(); ++j) {
       const Strata &a = scores[less ? j : i].runs, &b = scores[less ? i : j].runs;
       const Improvement better = improvement_of(a, b);
-      pairs.push_back(
-          {{"better", scores[i].name},
-           {"than", scores[j].name},
-           {"probability", better.probability},
-           {"interval", interval_json(better.interval)},
-           {"difference", iqm_of(scores[i].runs) - iqm_of(scores[j].runs)},
-           {"difference_interval", interval_json(difference_interval(scores[i].runs, scores[j].runs))}});
+      pairs.push_back({{"better", scores[i].name},
+                       {"than", scores[j].name},
+                       {"probability", better.probability},
+                       {"interval", interval_json(better.interval)},
+                       {"difference", iqm_of(scores[i].runs) - iqm_of(scores[j].runs)},
+                       {"difference_interval", interval_json(differences(i, j))}});
     }
   return pairs;
 }
@@ -60,7 +76,8 @@ Report run_compare(const CompareFlags& flags) {
   const std::vector<Scored> scores = read_scores(flags);
   std::vector<Strata> runs;
   for (const Scored& s : scores) runs.push_back(s.runs);
-  const std::vector<std::string> groups = group_letters(runs);
+  Differences differences(runs);
+  const std::vector<std::string> groups = group_letters(runs, std::ref(differences));
   Json rows = Json::array();
   Table table({flags.columns.of, "runs", "mean", "sd", "IQM", "95% interval", "group"});
   size_t fewest = SIZE_MAX;
@@ -85,8 +102,8 @@ Report run_compare(const CompareFlags& flags) {
   Json remarks = Json::array();
   if (fewest < 2)
     remarks.push_back("one run has no interval and no group");
-  else if (fewest * scores[0].runs.size() < 5)
-    remarks.push_back("intervals of fewer than 5 runs are too narrow");
+  else if (fewest * scores[0].runs.size() < kFewRuns)
+    remarks.push_back(format("intervals of fewer than %zu runs are too narrow", kFewRuns));
   std::string text = flags.markdown ? table.markdown() : table.text();
   if (!flags.markdown)
     for (const Json& remark : remarks) text += remark.get<std::string>() + '\n';
@@ -94,7 +111,7 @@ Report run_compare(const CompareFlags& flags) {
            {"tasks", scores[0].runs.size()},
            {"interval_level", kLevel},
            {"rows", rows},
-           {"pairs", pairs_json(scores, flags.less)},
+           {"pairs", pairs_json(scores, flags.less, differences)},
            {"remarks", remarks}},
           text};
 }

@@ -195,9 +195,9 @@ Report run_report(const ReportFlags& flags) {
       "+- is the deviation over seeds; runs that share a letter are not told apart by their returns (redman "
       "compare --help)\n";
   json["remarks"] = Json::array();
-  if (fewest < 5) {
+  if (fewest < kFewRuns) {
     const std::string remark = std::string(fewest < 2 ? "one run has no interval and no group; " : "") +
-                               "intervals of fewer than 5 runs are too narrow";
+                               format("intervals of fewer than %zu runs are too narrow", kFewRuns);
     json["remarks"].push_back(remark);
     text += remark + '\n';
   }

@@ -116,15 +116,13 @@ std::string bare_joint(const std::string& name) {
   return name;
 }
 
-struct Motors {
-  std::map<int32_t, rdm_joint_info> of;  // by entry of the action
-};
+using Motors = std::map<int32_t, rdm_joint_info>;  // by entry of the action
 Motors motors_of(const redman::Pool& pool) {
   Motors m;
   for (int32_t i = 0; i < pool.spec().num_joints; ++i) {
     auto joint = redman::sized<rdm_joint_info>();
     redman::check(rdm_pool_joint_at(pool.get(), i, &joint));
-    if (joint.action >= 0) m.of[joint.action] = joint;
+    if (joint.action >= 0) m[joint.action] = joint;
   }
   return m;
 }
@@ -143,8 +141,8 @@ std::vector<int32_t> group_sizes(const std::vector<std::string>& words, const Mo
     const bool motor = next == w;
     if (motor) ++next;
     int32_t end = at;
-    const auto side = [&](int32_t i) { return std::string(motors.of.at(i).name).substr(0, 4); };
-    while (end < entries && (motors.of.count(end) != 0) == motor && (!motor || side(end) == side(at))) ++end;
+    const auto side = [&](int32_t i) { return std::string(motors.at(i).name).substr(0, 4); };
+    while (end < entries && (motors.count(end) != 0) == motor && (!motor || side(end) == side(at))) ++end;
     for (; w < next; ++w) sizes.push_back((end - at) / static_cast<int32_t>(next - w)), at += sizes.back();
   }
   return sizes;
@@ -157,7 +155,7 @@ std::string joint_table(const Motors& motors) {
   };
   std::vector<Row> rows;
   const auto number = [](double x) { return std::isfinite(x) && x < 1e6 ? format("%.4g", x) : "-"; };
-  for (const auto& [entry, j] : motors.of) {
+  for (const auto& [entry, j] : motors) {
     const std::vector<std::string> cells = {'`' + bare_joint(j.name) + '`',
                                             format("%.4g to %.4g", j.lower, j.upper), number(j.kp),
                                             number(j.kd), number(j.effort)};
@@ -191,7 +189,7 @@ std::string actions_of(int32_t index) {
                std::to_string(sizes[w])});
   }
   std::string text = table.markdown();
-  if (!motors.of.empty()) text += '\n' + folded_away("Joints", joint_table(motors));
+  if (!motors.empty()) text += '\n' + folded_away("Joints", joint_table(motors));
   return text;
 }
 
@@ -261,13 +259,6 @@ struct OptionGroup {
   int32_t count = 0;
 };
 
-std::string default_of(const rdm_option_spec& o) {
-  if (o.text) return o.text;
-  if (o.kind == RDM_KIND_TEXT) return "";
-  if (o.kind == RDM_KIND_FLAG) return o.number != 0 ? "true" : "false";
-  return number_text(o.number);
-}
-
 std::string values_of(const rdm_option_spec& o) {
   if (o.kind == RDM_KIND_FLAG) return "`true`, `false`";
   if (o.kind != RDM_KIND_TEXT)
@@ -294,7 +285,7 @@ std::string option_rows_text(const std::vector<rdm_option_spec>& options, size_t
     auto same =
         std::find_if(groups.begin(), groups.end(), [&](const OptionGroup& g) { return g.key == key; });
     if (same == groups.end())
-      same = groups.insert(same, {key, default_of(o), values_of(o), cell(o.help), o.number, o.number, 0});
+      same = groups.insert(same, {key, default_text(o), values_of(o), cell(o.help), o.number, o.number, 0});
     same->low = std::min(same->low, o.number);
     same->high = std::max(same->high, o.number);
     ++same->count;

@@ -171,6 +171,13 @@ Json options_json(const std::vector<rdm_option_spec>& table) {
   return out;
 }
 
+std::string default_text(const rdm_option_spec& o) {
+  if (o.text) return o.text;
+  if (o.kind == RDM_KIND_TEXT) return "";
+  if (o.kind == RDM_KIND_FLAG) return o.number != 0 ? "true" : "false";
+  return number_text(o.number);
+}
+
 // One table for each level that has rows, the basic one first.
 std::string options_text(const std::vector<rdm_option_spec>& table) {
   std::string text;
@@ -179,11 +186,7 @@ std::string options_text(const std::vector<rdm_option_spec>& table) {
     bool any = false;
     for (const rdm_option_spec& o : table) {
       if (o.level != level) continue;
-      const std::string value = o.text                    ? o.text
-                                : o.kind == RDM_KIND_TEXT ? ""
-                                : o.kind == RDM_KIND_FLAG ? (o.number != 0 ? "true" : "false")
-                                                          : number_text(o.number);
-      out.add({o.key, value, bounds_text(o), o.help});
+      out.add({o.key, default_text(o), bounds_text(o), o.help});
       any = true;
     }
     if (any) text += (text.empty() ? "" : "\n") + out.text();

@@ -41,6 +41,7 @@ Json build_json();
 
 // A table of options as the tool's JSON has it, and as text for people.
 Json options_json(const std::vector<rdm_option_spec>& table);
+std::string default_text(const rdm_option_spec& option);  // "" of a text without one
 std::string options_text(const std::vector<rdm_option_spec>& table);
 
 }  // namespace tool

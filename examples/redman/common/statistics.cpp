@@ -251,12 +251,17 @@ std::vector<std::string> group_letters(size_t count, const std::function<bool(si
 }
 
 std::vector<std::string> group_letters(const std::vector<Strata>& rows, double level) {
+  return group_letters(rows,
+                       [&](size_t i, size_t j) { return difference_interval(rows[i], rows[j], level); });
+}
+
+std::vector<std::string> group_letters(const std::vector<Strata>& rows,
+                                       const std::function<Interval(size_t, size_t)>& difference) {
   std::vector<size_t> known;  // rows that have an interval
   for (size_t i = 0; i < rows.size(); ++i)
     if (several_each(rows[i])) known.push_back(i);
-  const std::vector<std::string> of_known = group_letters(known.size(), [&](size_t i, size_t j) {
-    return !difference_interval(rows[known[i]], rows[known[j]], level).has(0);
-  });
+  const std::vector<std::string> of_known =
+      group_letters(known.size(), [&](size_t i, size_t j) { return !difference(known[i], known[j]).has(0); });
   std::vector<std::string> letters(rows.size());
   for (size_t k = 0; k < known.size(); ++k) letters[known[k]] = of_known[k];
   return letters;

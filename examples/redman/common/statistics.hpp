@@ -34,6 +34,7 @@ struct Interval {
   bool has(double x) const { return low <= x && x <= high; }
   bool known() const { return low <= high; }
 };
+inline constexpr size_t kFewRuns = 5;                 // intervals of fewer are too narrow
 std::string interval_text(const Interval& interval);  // "1.2 .. 3.4", "-" where it is not known
 Json interval_json(const Interval& interval);
 
@@ -66,6 +67,9 @@ Improvement improvement_of(const Strata& a, const Strata& b, double level = kLev
 // 2004.
 inline constexpr size_t kMostGrouped = 100;
 std::vector<std::string> group_letters(const std::vector<Strata>& rows, double level = kLevel);
+// The same where the interval of the difference of rows i < j, which is asked for once each, is known already.
+std::vector<std::string> group_letters(const std::vector<Strata>& rows,
+                                       const std::function<Interval(size_t, size_t)>& difference);
 // The same of any relation; apart(i, j) for i < j.
 std::vector<std::string> group_letters(size_t count, const std::function<bool(size_t, size_t)>& apart);
 

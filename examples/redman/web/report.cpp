@@ -152,7 +152,8 @@ std::string seeds_table(const TaskReport& t) {
       "</tbody></table></div>\n<p class=\"hint\">IQM: the interquartile mean of the runs&rsquo; returns, "
       "with the "
       "interval of a bootstrap over runs";
-  if (fewest < 5) out += ", which is too narrow for fewer than 5 of them and is none for one";
+  if (fewest < kFewRuns)
+    out += format(", which is too narrow for fewer than %zu of them and is none for one", kFewRuns);
   return out +
          ". Costs of training are column 0 with exploration, violating steps those in which it or a limited "
          "cost "
