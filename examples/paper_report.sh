@@ -7,15 +7,15 @@
 # prints the block `runs` of the algorithm's page in the manual.
 # Environment: REDMAN (the tool, which tells algorithms apart).
 set -eu
-root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+# shellcheck source=examples/runs.sh
+. "$(dirname "${BASH_SOURCE[0]}")/runs.sh"
 block=
 [ "${1:-}" != --block ] || { block=$2; shift 2; }
 results=${1:-$root/examples/results}
-redman=${REDMAN:-$root/build/release/bin/redman}
 [ -n "$block" ] || [ -x "$redman" ] || { echo "there is no $redman: build it, or say where it is with REDMAN" >&2; exit 1; }
 # For the awk programs of the tables: a figure as text.
-number='function number(x) { return sprintf(x >= 1e3 ? "%.0f" : "%.3g", x) }
-function spread(sd) { return sd == "-" ? "" : sprintf(sd >= 99.5 ? " +- %.0f" : " +- %.2g", sd) }
+number=$error'function number(x) { return sprintf(x >= 1e3 ? "%.0f" : "%.3g", x) }
+function spread(sd) { return sd == "-" ? "" : " +- " error(sd) }
 '
 
 # means PART: one line for each task and algorithm: task algo limit seeds steps return cost falls success sampled_return

@@ -66,12 +66,14 @@ marked='function marked(cost, limit) {
   return sprintf("%.3g", cost) (limit ~ /^[0-9]/ && cost + 0 > limit + 0 ? "!" : "")
 }
 '
-# For the awk programs of the tables: the standard deviation over seeds of a list of figures, " +- 0.4"; "" of one.
-deviation='function deviation(list, x, n, i, s, q) {
+# For the awk programs of the tables: an error in two digits, without any behind the point where it is large; the standard deviation
+# over seeds of a list of figures, " +- 0.4", "" of one.
+error='function error(x) { return sprintf(x >= 99.5 ? "%.0f" : "%.2g", x) }
+'
+deviation=$error'function deviation(list, x, n, i, s, q) {
   n = split(list, x, /!?, */); for (i = 1; i <= n; ++i) s += x[i]
   for (i = 1; i <= n; ++i) q += (x[i] - s / n) ^ 2
-  q = n > 1 ? sqrt(q / (n - 1)) : 0
-  return n > 1 ? sprintf(q >= 99.5 ? " +- %.0f" : " +- %.2g", q) : ""
+  return n > 1 ? " +- " error(sqrt(q / (n - 1))) : ""
 }
 '
 over_note='A seed whose mean cost is over its limit is marked with an exclamation mark; behind +- stands the standard deviation over seeds.'

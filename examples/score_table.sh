@@ -13,9 +13,8 @@ scores=$results/scores.csv episodes=${EPISODES:-100}
 if [ "${1:-}" = --block ]; then
   echo
   echo "## Scores"
-  awk -F, -v task="$2" '
+  awk -F, -v task="$2" "$error"'
     function number(x) { return sprintf(x >= 1e4 || x <= -1e4 ? "%.0f" : "%.4g", x) }
-    function error(x) { return sprintf("%.2g", x) }
     FNR == 1 { ++file; delete at; for (i = 1; i <= NF; ++i) at[$i] = i; next }
     $at["task"] != task { next }
     file == 1 { name["zero"] = "zero actions"; name["random"] = "random actions"; name["trained"] = "bundled policy"
