@@ -36,9 +36,10 @@ done
 lost=0
 git archive --format=tar --prefix="redman-$version/" "$commit" | gzip -9n > "$files/redman-$version.tar.gz"
 git archive --format=tar --prefix="redman-policies-$version/" "$commit:examples/policies" | gzip -9n > "$files/redman-policies-$version.tar.gz"
-# of mode packages
-find "$copy/build/package/packages" -name '*.deb' -exec cp {} "$files" \; 2> /dev/null
-find "$copy/build/wheel" -name '*.whl' -exec cp {} "$files" \; 2> /dev/null
+# of mode packages, once it has passed for this commit: builds of an earlier one stay in the copy
+if [ -s "$out/packages.passed" ] && ! ls "$files"/*.whl > /dev/null 2>&1; then
+  cp "$copy"/build/package/packages/*.deb "$copy"/build/wheel/*.whl "$files"
+fi
 ls "$files"/*.deb > /dev/null 2>&1 && ls "$files"/*.whl > /dev/null 2>&1 || lost=1
 (cd "$files" && find . -type f ! -name SHA256SUMS -printf '%P\n' | sort | xargs sha256sum > SHA256SUMS)
 

@@ -46,15 +46,15 @@ def contents(pages, caption=None):
 
 def add_contents(app, name, source):
     """The side bar. It names every page, those behind the manual's by folders."""
-    tree = chapters()
     if name == root_doc:
+        tree = chapters()
         named = {page for pages in tree.values() for page in pages} | {root_doc, "c-reference", "python-reference"}
         rest = sorted(page for page in app.env.found_docs - named if not page.startswith(BEHIND))
         source[0] += "".join(contents(pages, section) for section, pages in tree.items())
         source[0] += contents(["c-reference", "python-reference"] + rest, "More")
-    elif name.endswith("/README") and name[:-6] in BEHIND:
-        source[0] += contents(sorted(page[len(name) - 6:] for page in app.env.found_docs
-                                     if page.startswith(name[:-6]) and page != name and "/" not in page[len(name) - 6:]))
+    elif (folder := name.removesuffix("README")) in BEHIND:
+        pages = {page.removeprefix(folder) for page in app.env.found_docs if page.startswith(folder)}
+        source[0] += contents(sorted(page for page in pages if page != "README" and "/" not in page))
 
 
 # Folders whose pages stand behind their first one.
