@@ -380,43 +380,59 @@ void Shield::set_plan(const Pool& pool, int32_t env, const float* actions, int32
   for (size_t j = 0; j < row_of(count); ++j)
     if (!std::isfinite(actions[j])) fail(Code::kArgument, "plan: entry %zu is not finite", j);
   order_backups(nullptr);
-  const double* bound = bound_of(pool, env);
-  const int32_t i = first_of(env), end = set_.look > 0 ? std::min(count + set_.look, length_) : length_;
   // It is tried with each backup behind its end, until one is clean.
   for (int32_t b = 0;; ++b) {
-    first_.stop_all();
-    first_.start(i, pool, env, bound);
-    int32_t d = 0;
-    for (; first_.going(i) && d < end && (d < count || b < num_order_); ++d) {
-      if (d < count) {
-        guards_.project(env, actions + row_of(d), first_.action(i));
-      } else {
-        backup_[i] = order_[b];
-        back_up(&first_, backup_);
-        keep_guards(&first_, worlds_);
-      }
-      std::copy_n(first_.action(i), dim_, way_ + plan_of(env) + row_of(d));
-      counts_.copied += first_.step(steps_, true);
+    const int32_t ran = run_plan(pool, env, actions, count, b);
+    const int32_t i = first_of(env), ahead = first_.ended_in(i) - pool.episode_step(env),
+                  column = first_.column(i);
+    switch (first_.fate(i)) {
+      case CopiesTried::Fate::kGoing:  // to the end of what is looked at, or there is nothing behind it
+        if (ran == plan_end(count)) return adopt_plan(pool, env, ran);
+        fail(Code::kState, "world %d: the plan ends before the episode, and there is no backup", env);
+      case CopiesTried::Fate::kOver:
+        return adopt_plan(pool, env, ran);
+      case CopiesTried::Fate::kCost:
+      case CopiesTried::Fate::kLost:
+        if (ran > count && b + 1 < num_order_) break;
+        if (column < 0)
+          fail(Code::kState, "world %d: by the plan it diverges in %d control steps", env, ahead);
+        fail(Code::kState, "world %d: by the plan cost column %d, %s, exceeds its budget in %d control steps",
+             env, column, Quoted(task_at(pool.task_index()).costs[column].name).text, ahead);
     }
-    const auto fate = first_.fate(i);
-    if (fate == CopiesTried::Fate::kOver || (fate == CopiesTried::Fate::kGoing && d == end)) {
-      Plan& p = plans_[env];
-      p = {};
-      p.course = pool.course(env);
-      p.begin = pool.episode_step(env);
-      p.length = d;
-      p.refused = p.backup = p.column = -1;
-      std::copy_n(way_ + plan_of(env), row_of(d), plan_ + plan_of(env));
-      return;
-    }
-    if (fate != CopiesTried::Fate::kGoing && d > count && b + 1 < num_order_) continue;
-    if (fate == CopiesTried::Fate::kGoing)
-      fail(Code::kState, "world %d: the plan ends before the episode, and there is no backup", env);
-    const int32_t ahead = first_.ended_in(i) - pool.episode_step(env), column = first_.column(i);
-    if (column < 0) fail(Code::kState, "world %d: by the plan it diverges in %d control steps", env, ahead);
-    fail(Code::kState, "world %d: by the plan cost column %d, %s, exceeds its budget in %d control steps",
-         env, column, Quoted(task_at(pool.task_index()).costs[column].name).text, ahead);
   }
+}
+
+int32_t Shield::plan_end(int32_t count) const {
+  return set_.look > 0 ? std::min(count + set_.look, length_) : length_;
+}
+
+int32_t Shield::run_plan(const Pool& pool, int32_t env, const float* actions, int32_t count, int32_t b) {
+  const int32_t i = first_of(env), end = plan_end(count);
+  first_.stop_all();
+  first_.start(i, pool, env, bound_of(pool, env));
+  int32_t d = 0;
+  for (; first_.going(i) && d < end && (d < count || b < num_order_); ++d) {
+    if (d < count) {
+      guards_.project(env, actions + row_of(d), first_.action(i));
+    } else {
+      backup_[i] = order_[b];
+      back_up(&first_, backup_);
+      keep_guards(&first_, worlds_);
+    }
+    std::copy_n(first_.action(i), dim_, way_ + plan_of(env) + row_of(d));
+    counts_.copied += first_.step(steps_, true);
+  }
+  return d;
+}
+
+void Shield::adopt_plan(const Pool& pool, int32_t env, int32_t decisions) {
+  Plan& p = plans_[env];
+  p = {};
+  p.course = pool.course(env);
+  p.begin = pool.episode_step(env);
+  p.length = decisions;
+  p.refused = p.backup = p.column = -1;
+  std::copy_n(way_ + plan_of(env), row_of(decisions), plan_ + plan_of(env));
 }
 
 }  // namespace rdm

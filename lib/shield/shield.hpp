@@ -207,6 +207,10 @@ class Shield {
   void count(const ShieldRow& row);
   void order_backups(Foresight* foresight);
   void inquire(const Pool& pool, const float* proposed, bool unneeded);
+  // A host's plan in a copy, with backup order_[b] behind it: the decisions that it went on for, in way_.
+  int32_t run_plan(const Pool& pool, int32_t env, const float* actions, int32_t count, int32_t b);
+  int32_t plan_end(int32_t count) const;  // decisions of it and its backup that are looked at
+  void adopt_plan(const Pool& pool, int32_t env, int32_t decisions);
   const double* bound_of(const Pool& pool, int32_t env);  // what its episode's costs may come to, [costs]
   void run_first(const Pool& pool, const float* proposed);
   void foresee(int32_t d);

@@ -195,9 +195,8 @@ class Shield(Hinted):
     def set_plan(self, plan: Any, env: int = 0) -> None:
         """plan [decisions][action_dim] becomes the plan of one world, as a demonstration or a planner has it: it goes on where
         nothing new is clean. StateError where a budget is exceeded by it, which says when; its plan before stays then."""
-        rows = np.ascontiguousarray(plan, np.float32)
-        if rows.ndim != 2 or rows.shape[1] != self.pool.action_dim:
-            raise ArgumentError(f"plan: shape {rows.shape}, not (decisions, {self.pool.action_dim})")
+        lengths = {**self._lengths, "decisions": np.size(plan) // self.pool.action_dim}
+        rows = given(plan, _abi.FUNCTIONS["rdm_shield_set_plan"].rows["plan"], lengths, "plan")
         with self.pool._lock, self._lock:
             check(lib.rdm_shield_set_plan(self._handle.value, self.pool._open(), int32(env, "env"), rows.ctypes.data, len(rows)))
 
