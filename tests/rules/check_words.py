@@ -32,6 +32,7 @@ WORDS = [
     (r"half-solved", "multiplied by L^-1", None),
     (r"shims?", "ABI layer", None),
     (r"stands? in (a|its|the) (capsule|box|sphere)", "is bounded by", None),
+    (r"stands? in(?= \[)|stands? in (the (manual|tables?|way)|one place)", "is in", None),
     (r"plainly", "(leave it out)", None),
     (r"by feed-forward", "with gravity compensation", None),
     (r"half again|thrice|tens", "1.5 times, three times, 10 to 99", None),
