@@ -11,7 +11,7 @@ namespace tool {
 
 inline constexpr double kReturnQuantiles[] = {0.1, 0.5, 0.9}, kCostQuantiles[] = {0.5, 0.9, 0.99};
 // Of more episodes than these the interval of a mean is that of the normal law, which the bootstrap's then is.
-inline constexpr size_t kMostResampled = 10'000;
+inline constexpr size_t kMostResampled = 2000;
 // So many are asked for where a cost's deviation is above its limit.
 inline constexpr int32_t kManyEpisodes = 1000;
 
