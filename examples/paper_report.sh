@@ -200,8 +200,8 @@ if [ -n "$block" ]; then
     $1 == "P" { if ($3 == algo) known[$2] = $4 " @ " $5; next }
     $3 != algo { next }
     !rows++ { print "| task | costs of | limit | seeds | return | cost | success | stochastic: return @ cost | published |"; print "|---|---|---|---|---|---|---|---|---|" }
-    { printf "| [`%s`](../tasks/%s.md) | %s | %s | %d | %s | %s%s | %.0f %% | %s @ %s | %s |\n", $2, $2,
-        $1 == "table1" ? "angles" : $1 == "command" ? "commands" : "the task", $4 < 0 ? "-" : $4, $5, number($7), number($8),
+    { printf "| [`%s`](../tasks/%s.md) | %s | %s | %d | %s%s | %s%s%s | %.0f %% | %s @ %s | %s |\n", $2, $2,
+        $1 == "table1" ? "angles" : $1 == "command" ? "commands" : "the task", $4 < 0 ? "-" : $4, $5, number($7), spread($26), number($8), spread($27),
         ($4 >= 0 && $8 > $4) ? ", above its limit" : "", 100 * $10, number($11), number($12), $1 == "command" ? known[$2] : "" }
     END { if (!rows) print "No runs of this algorithm are kept in examples/results." }'
   echo "<!-- end of runs -->"
