@@ -14,6 +14,7 @@ export CCACHE_DEPEND=1 CCACHE_COMPILERTYPE=clang
 bash cmake/cross/deps.sh wasm || exit 1
 configure wasm
 cmake --build --preset wasm -j "$(nproc)" --target redman_static >&2 || die "preset wasm could not be built: see above"
+unset CCACHE_DEPEND CCACHE_COMPILERTYPE # the tool's compiler is no clang
 tool=build/release/bin/redman
 if [ ! -x $tool ]; then
   tool=build/dev/bin/redman
