@@ -23,6 +23,7 @@ namespace {
 constexpr size_t kFirstSize = sizeof(rdm_task_def);
 constexpr int32_t kMostRows = 512, kMostActions = 1024, kMostSteps = 100000;
 constexpr size_t kLongestName = 40;
+constexpr size_t kMostRowsAtOnce = 256, kChunkStates = size_t{1} << 22;  // worlds, bytes
 constexpr uint64_t kMostState = uint64_t{1} << 20, kMostInstance = uint64_t{1} << 24;
 
 rdm_task_def default_def() {
@@ -130,6 +131,7 @@ class BuiltTask final : public Task {
       fail(Code::kRange, "task %s: the fields have %d entries, at most %d", own.def.name,
            field_total(scene_.fields), kMostEntries);
     scene_.options = nullptr;
+    make_chunk();
   }
 
   const Scene& scene() const override { return scene_.scene; }
@@ -150,6 +152,12 @@ class BuiltTask final : public Task {
     std::copy(scene_.mean.begin(), scene_.mean.end(), action);
   }
 
+  bool takes_rows() const override { return !chunk_.worlds.empty(); }
+  void reset_rows(const TaskRows& r) const override;
+  void control_rows(const TaskRows& r) const override;
+  void judge_rows(const TaskRows& r) const override;
+  void observe_rows(const TaskRows& r) const override;
+
   void check_state(const void* state) const override {
     const rdm_task_def& d = own_.def;
     if (!d.check_state) return;
@@ -167,7 +175,12 @@ class BuiltTask final : public Task {
     auto random = rdm::bit_cast<rdm_random>(stream);
     const auto keep = [&] { stream = rdm::bit_cast<Stream>(random); };
     try {
-      own_.run("reset", [&] { return d.reset(d.user, instance_.data(), &w, state, &random); });
+      own_.run("reset", [&] {
+        if (!d.reset_many) return d.reset(d.user, instance_.data(), &w, state, &random);
+        Row row(&w, state);
+        row.rows.randoms = &random;
+        return row.result(d.reset_many(d.user, instance_.data(), &row.rows));
+      });
     } catch (...) {
       keep();  // what failed by chance is not tried with the same draws
       throw;
@@ -177,31 +190,64 @@ class BuiltTask final : public Task {
   void control(World& world, void* state, const float* action) const override {
     const rdm_task_def& d = own_.def;
     rdm_world w(&world, &scene_, false);
-    own_.run("control", [&] { return d.control(d.user, instance_.data(), &w, state, action); });
+    own_.run("control", [&] {
+      if (!d.control_many) return d.control(d.user, instance_.data(), &w, state, action);
+      Row row(&w, state);
+      row.rows.actions = action;
+      return row.result(d.control_many(d.user, instance_.data(), &row.rows));
+    });
   }
   Verdict judge(World& world, void* state, int32_t step) const override {
     const rdm_task_def& d = own_.def;
     rdm_world w(&world, &scene_, false);
     rdm_verdict out{};
-    own_.run("judge", [&] { return d.judge(d.user, instance_.data(), &w, state, step, &out); });
-    Verdict v;
-    v.reward = out.reward;
-    for (int32_t k = 0; k < d.num_costs; ++k) {
-      if (out.cost[k] < 0)
-        fail(Code::kRange, "task %s: judge: cost %s is %g, less than 0", d.name, own_.info().costs[k].name,
-             out.cost[k]);
-      v.cost[k] = out.cost[k];
-      v.cost_raw[k] = out.cost_raw[k];
-    }
-    v.terminated = out.terminated != 0;
-    v.success = out.success != 0;
-    return v;
+    own_.run("judge", [&] {
+      if (!d.judge_many) return d.judge(d.user, instance_.data(), &w, state, step, &out);
+      Row row(&w, state);
+      row.rows.steps = &step, row.rows.verdicts = &out;
+      return row.result(d.judge_many(d.user, instance_.data(), &row.rows));
+    });
+    return verdict_of(out);
   }
   void observe(const World& world, const void* state, float* obs) const override {
     const rdm_task_def& d = own_.def;
-    const rdm_world w(const_cast<World*>(&world), &scene_, true);
-    own_.run("observe", [&] { return d.observe(d.user, instance_.data(), &w, state, obs); });
+    rdm_world w(const_cast<World*>(&world), &scene_, true);
+    own_.run("observe", [&] {
+      if (!d.observe_many) return d.observe(d.user, instance_.data(), &w, state, obs);
+      Row row(&w, const_cast<void*>(state));
+      row.rows.obs = obs;
+      return row.result(d.observe_many(d.user, instance_.data(), &row.rows));
+    });
   }
+
+ private:
+  // One world for a function of many.
+  struct Row {
+    Row(rdm_world* w, void* state) : world(w) {
+      rows.struct_size = sizeof rows;
+      rows.count = 1;
+      rows.worlds = &world;
+      rows.states = state;
+      rows.results = &own;
+    }
+    rdm_result result(rdm_result of_all) const { return of_all != RDM_OK ? of_all : own; }
+    rdm_world* world;
+    rdm_result own = RDM_OK;
+    rdm_task_rows rows{};
+  };
+  // Many worlds for one, so many at a time.
+  struct Chunk {
+    Vector<rdm_world> worlds;  // [most]
+    Vector<rdm_world*> handles;
+    Vector<unsigned char> states;  // [most][state_bytes]
+    Vector<rdm_result> results;
+    Vector<rdm_random> randoms;
+    Vector<rdm_verdict> verdicts;
+  };
+  Verdict verdict_of(const rdm_verdict& out) const;
+  void make_chunk();
+  template <class F>
+  void each_chunk(const char* function, bool fixed, const TaskRows& r, F&& f) const;
 
  private:
   struct alignas(std::max_align_t) Block {  // bytes alone: of a max_align_t the padding is not zeroed
@@ -212,7 +258,153 @@ class BuiltTask final : public Task {
   int32_t max_steps_;
   rdm_scene scene_;
   Vector<Block> instance_;  // zeroed
+  mutable Chunk chunk_;     // of a task with a function of many; a pool is used by one thread at a time
 };
+
+Verdict BuiltTask::verdict_of(const rdm_verdict& out) const {
+  const rdm_task_def& d = own_.def;
+  Verdict v;
+  v.reward = out.reward;
+  for (int32_t k = 0; k < d.num_costs; ++k) {
+    if (out.cost[k] < 0)
+      fail(Code::kRange, "task %s: judge: cost %s is %g, less than 0", d.name, own_.info().costs[k].name,
+           out.cost[k]);
+    v.cost[k] = out.cost[k];
+    v.cost_raw[k] = out.cost_raw[k];
+  }
+  v.terminated = out.terminated != 0;
+  v.success = out.success != 0;
+  return v;
+}
+
+void BuiltTask::make_chunk() {
+  const rdm_task_def& d = own_.def;
+  if (!d.reset_many && !d.control_many && !d.judge_many && !d.observe_many) return;
+  const size_t state = static_cast<size_t>(d.state_bytes),
+               most = std::clamp<size_t>(kChunkStates / std::max<size_t>(state, 1), 1, kMostRowsAtOnce);
+  chunk_.worlds.resize(most);
+  for (rdm_world& w : chunk_.worlds) w.scene = &scene_, chunk_.handles.push_back(&w);
+  chunk_.states.resize(most * state);
+  chunk_.results.resize(most);
+  chunk_.randoms.resize(most);
+  chunk_.verdicts.resize(most);
+}
+
+// f(rows, begin, count) for runs of the rows: it calls the host's function. `fixed`: states and worlds are only
+// looked at.
+template <class F>
+void BuiltTask::each_chunk(const char* function, bool fixed, const TaskRows& r, F&& f) const {
+  const auto most = static_cast<int32_t>(chunk_.worlds.size());
+  const size_t state = state_bytes();
+  for (int32_t begin = 0; begin < r.count; begin += most) {
+    const int32_t count = std::min(most, r.count - begin);
+    for (int32_t k = 0; k < count; ++k) {
+      const auto i = static_cast<size_t>(k);
+      chunk_.worlds[i].tag = rdm_world::kTag;
+      chunk_.worlds[i].world = r.worlds[begin + k];
+      chunk_.worlds[i].fixed = fixed;
+      if (state > 0) std::memcpy(chunk_.states.data() + i * state, r.states[begin + k], state);
+    }
+    std::fill_n(chunk_.results.begin(), count, RDM_OK);
+    rdm_task_rows rows{};
+    rows.struct_size = sizeof rows;
+    rows.count = count;
+    rows.worlds = chunk_.handles.data();
+    rows.states = state > 0 ? chunk_.states.data() : nullptr;
+    rows.results = chunk_.results.data();
+    struct Retire {  // handles are good within the call alone
+      Chunk* chunk;
+      int32_t count;
+      ~Retire() {
+        for (int32_t k = 0; k < count; ++k) retire(&chunk->worlds[static_cast<size_t>(k)]);
+      }
+    } retired{&chunk_, count};
+    own_.run(function, [&] { return f(&rows, begin, count); });
+    for (int32_t k = 0; k < count; ++k) {
+      const auto i = static_cast<size_t>(k);
+      if (chunk_.results[i] != RDM_OK) {
+        try {
+          own_.blame(function, chunk_.results[i], false);
+        } catch (const Error& e) {
+          r.codes[begin + k] = e.code;
+          copy_text(r.texts[begin + k], kErrorTextSize, e.text);
+        }
+      }
+      if (state > 0 && !fixed) std::memcpy(r.states[begin + k], chunk_.states.data() + i * state, state);
+    }
+  }
+}
+
+// A function that takes one world alone, for each row; what fails in it is that row's.
+template <class F>
+void each_row(const TaskRows& r, F&& f) {
+  for (int32_t k = 0; k < r.count; ++k) {
+    try {
+      f(k);
+    } catch (const Error& e) {
+      r.codes[k] = e.code;
+      copy_text(r.texts[k], kErrorTextSize, e.text);
+    }
+  }
+}
+
+void BuiltTask::reset_rows(const TaskRows& r) const {
+  const rdm_task_def& d = own_.def;
+  if (!d.reset_many) return each_row(r, [&](int32_t k) { reset(*r.worlds[k], r.states[k], *r.streams[k]); });
+  for (int32_t k = 0; k < r.count; ++k) scene_.draws.apply(*r.worlds[k], *r.streams[k]);
+  each_chunk("reset", false, r, [&](rdm_task_rows* rows, int32_t begin, int32_t count) {
+    rows->randoms = chunk_.randoms.data();
+    for (int32_t k = 0; k < count; ++k) rows->randoms[k] = rdm::bit_cast<rdm_random>(*r.streams[begin + k]);
+    const rdm_result result = d.reset_many(d.user, instance_.data(), rows);
+    for (int32_t k = 0; k < count; ++k) *r.streams[begin + k] = rdm::bit_cast<Stream>(rows->randoms[k]);
+    return result;
+  });
+}
+
+void BuiltTask::control_rows(const TaskRows& r) const {
+  const rdm_task_def& d = own_.def;
+  const ptrdiff_t dim = action_dim();
+  if (!d.control_many)
+    return each_row(r, [&](int32_t k) { control(*r.worlds[k], r.states[k], r.actions + k * dim); });
+  each_chunk("control", false, r, [&](rdm_task_rows* rows, int32_t begin, int32_t) {
+    rows->actions = r.actions + begin * dim;
+    return d.control_many(d.user, instance_.data(), rows);
+  });
+}
+
+void BuiltTask::judge_rows(const TaskRows& r) const {
+  const rdm_task_def& d = own_.def;
+  if (!d.judge_many)
+    return each_row(r, [&](int32_t k) { r.verdicts[k] = judge(*r.worlds[k], r.states[k], r.steps[k]); });
+  each_chunk("judge", false, r, [&](rdm_task_rows* rows, int32_t begin, int32_t count) {
+    rows->steps = r.steps + begin;
+    rows->verdicts = chunk_.verdicts.data();
+    std::fill_n(rows->verdicts, count, rdm_verdict{});
+    const rdm_result result = d.judge_many(d.user, instance_.data(), rows);
+    for (int32_t k = 0; result == RDM_OK && k < count; ++k) {
+      if (rows->results[k] != RDM_OK) continue;
+      // a cost below 0 is that row's fault alone
+      try {
+        r.verdicts[begin + k] = verdict_of(rows->verdicts[k]);
+      } catch (const Error& e) {
+        r.codes[begin + k] = e.code;
+        copy_text(r.texts[begin + k], kErrorTextSize, e.text);
+      }
+    }
+    return result;
+  });
+}
+
+void BuiltTask::observe_rows(const TaskRows& r) const {
+  const rdm_task_def& d = own_.def;
+  const ptrdiff_t dim = field_total(scene_.fields);
+  if (!d.observe_many)
+    return each_row(r, [&](int32_t k) { observe(*r.worlds[k], r.states[k], r.obs + k * dim); });
+  each_chunk("observe", true, r, [&](rdm_task_rows* rows, int32_t begin, int32_t) {
+    rows->obs = r.obs + begin * dim;
+    return d.observe_many(d.user, instance_.data(), rows);
+  });
+}
 
 }  // namespace
 
@@ -257,10 +449,10 @@ OwnTask::OwnTask(const rdm_task_def& d, const HostHooks& hooks) : def(d), hooks_
     if (!given) fail(Code::kArgument, "def.%s is NULL", name);
   };
   required(d.build, "build");
-  required(d.reset, "reset");
-  required(d.control, "control");
-  required(d.judge, "judge");
-  required(d.observe, "observe");
+  required(d.reset || d.reset_many, "reset");
+  required(d.control || d.control_many, "control");
+  required(d.judge || d.judge_many, "judge");
+  required(d.observe || d.observe_many, "observe");
   take_fields();
   take_costs();
   take_options();

@@ -72,12 +72,14 @@ class OwnTask final : public TaskSource {
     if (thrown || r != RDM_OK) blame(function, r, thrown);
   }
 
+  // Throws what a function returned that is not RDM_OK.
+  [[noreturn]] void blame(const char* function, rdm_result r, bool thrown) const;
+
   rdm_task_def def;  // of its arrays, those that are copied below are not to be used
   FieldTable fields;
   Vector<float> hold, mean;  // [action_dim]
 
  private:
-  [[noreturn]] void blame(const char* function, rdm_result r, bool thrown) const;
   void take_fields();
   void take_costs();
   void take_options();
@@ -134,8 +136,10 @@ struct rdm_world {
   rdm::World* world = nullptr;
   const rdm_scene* scene = nullptr;
 
+  rdm_world() = default;  // to be filled
   rdm_world(rdm::World* w, const rdm_scene* s, bool looked_at) : fixed(looked_at), world(w), scene(s) {}
   ~rdm_world() { rdm::capi::retire(this); }
+  rdm_world(rdm_world&&) = default;
   rdm_world(const rdm_world&) = delete;
   rdm_world& operator=(const rdm_world&) = delete;
 };

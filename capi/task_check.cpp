@@ -365,9 +365,37 @@ void step_pool(const PoolPtr& p, Baseline actions, int32_t step, Patience* patie
   }
 }
 
+// The functions of many that a step calls get one row each time.
+void step_apart(const PoolPtr& p, Patience* patience) {
+  patience->ask();
+  p->baseline(Baseline::kRandom);
+  for (int32_t i = 0; i < kPoolWorlds; ++i) {
+    uint8_t mask[kPoolWorlds] = {};
+    mask[i] = 1;
+    p->step(mask);
+    patience->steps += p->taken(i);
+  }
+}
+
+void check_rows(const PoolConfig& config, const char* task, Patience* patience) {
+  const PoolPtr together(Pool::create(config)), apart(Pool::create(config));
+  together->reset(nullptr, nullptr);
+  for (int32_t i = 0; i < kPoolWorlds; ++i) {
+    uint8_t mask[kPoolWorlds] = {};
+    mask[i] = 1;
+    apart->reset(nullptr, mask);
+  }
+  for (int32_t step = 1; step <= kPoolSteps; ++step) {
+    step_pool(together, Baseline::kRandom, step, patience);
+    step_apart(apart, patience);
+    compare_rows(*together, *apart, task, step, "beside other rows than alone");
+  }
+}
+
 void check_pools(PoolConfig config, const char* task, Patience* patience) {
   config.num_envs = kPoolWorlds;
   const PoolPtr one(Pool::create(config));
+  if (one->task().takes_rows()) check_rows(config, task, patience);
   config.num_threads = 2;
   const PoolPtr two(Pool::create(config)), restored(Pool::create(config));
   one->reset(nullptr, nullptr);

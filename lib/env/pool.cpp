@@ -54,6 +54,7 @@ Pool::Impl::Carved Pool::Impl::carve_rows(const ResolvedPoolConfig& plan, Arena&
   if (plan.info->source) c.task_errors = arena.make<char>(n * kErrorTextSize);
   c.tried_state = arena.make<unsigned char>(plan.task->state_bytes());
   c.tried.carve(arena, plan.disturbance, *plan.task);
+  if (plan.task->takes_rows()) c.work.carve(arena, plan);
   for (size_t i = 0; i < blocks; ++i) {
     float* action = arena.make<float>(width_action);
     const SenseScratch sense =
@@ -87,6 +88,7 @@ void Pool::Impl::build() {
   task_errors = carved.task_errors;
   tried_state = carved.tried_state;
   tried = carved.tried;
+  work = carved.work;
   for (int32_t b = 0; b < num_blocks(); ++b) {
     World* partner = nullptr;  // the worlds of a block step one after the other
     for (int32_t i = block_begin(b); i < block_begin(b + 1); ++i) {

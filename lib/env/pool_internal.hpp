@@ -80,6 +80,18 @@ struct alignas(Arena::kAlign) Block {
   void attempt(int32_t env, F&& f);
 };
 
+// What a step of a task that takes rows works in (pool_rows.cpp).
+struct RowWork {
+  TaskRows rows;
+  int32_t* env = nullptr;     // [num_envs] of the rows
+  uint8_t* waits = nullptr;   // [num_envs] for the engine
+  uint8_t* ended = nullptr;   // [num_envs] and the next episode has to begin
+  Episode* before = nullptr;  // [num_envs] of rows that begin
+  Code* result = nullptr;     // [num_envs] of beginning
+
+  void carve(Arena& arena, const ResolvedPoolConfig& plan);
+};
+
 struct Pool::Impl : ResolvedPoolConfig {
   explicit Impl(const PoolConfig& c) : ResolvedPoolConfig(c) {}
   ~Impl();
@@ -93,6 +105,7 @@ struct Pool::Impl : ResolvedPoolConfig {
     char* task_errors = nullptr;
     unsigned char* tried_state = nullptr;
     WorldDisturbance tried;
+    RowWork work;
   };
   static Carved carve_rows(const ResolvedPoolConfig& plan, Arena& arena);
   static size_t arena_bytes(const ResolvedPoolConfig& plan);
@@ -104,16 +117,27 @@ struct Pool::Impl : ResolvedPoolConfig {
   // Resets world, streams go on, writes obs. Where the task fails in it: its code; the world then is as it
   // was made, and the episode the one before.
   Code begin_episode(int32_t env);
-  void restart(int32_t env);  // a step that only resets
+  // Its three parts, of which the second calls the task. open_episode returns the episode before.
+  Episode open_episode(int32_t env);
+  bool show_first(int32_t env);  // after a task's reset and observe; false: an entry is not finite
+  Code settle_episode(int32_t env, const Episode& before, Code code, bool good);
+  void renew(int32_t env);
+  void forget_episode(int32_t env);         // as if the world had never been reset
+  void restart(int32_t env);                // a step that only resets
+  void show_reset(int32_t env, Code code);  // rows of a step that only reset
   void count(int32_t env, uint32_t status);
   // Runs f, which calls the task; the code of a host's one that failed in it, and the world's text says how.
   template <class F>
   Code attempt_task(int32_t env, F&& f);
+  void keep_error(int32_t env, const char* why);
   bool begin_at_start(int32_t env);  // an episode that has begun; true: it now is one of `starts`
   void clear_rows(int32_t env);      // reward, costs, flags, status, sums; final_obs becomes obs
   // What is shown of control step `step`, 0 at a reset; false: an entry is not finite.
   bool observe(int32_t env, int32_t step, float* row);
-  void see(int32_t env, Block& block);  // pictures, points and voxels
+  bool show(int32_t env, int32_t step, float* row);  // what the task has written, made what is seen
+  void see(int32_t env, Block& block);               // pictures, points and voxels
+  template <class F>
+  void look_round(int32_t begin, int32_t end, Block& block, F&& named);
   // A control step of the block's worlds for which wanted(env).
   template <class F>
   void control_step(int32_t begin, int32_t end, Block& block, F&& wanted);
@@ -122,10 +146,25 @@ struct Pool::Impl : ResolvedPoolConfig {
   void start_step(int32_t env, Block& block);
   void step_group(Block& block);
   void finish_step(int32_t env);
+  bool engine_failed(int32_t env);  // counts what the engine did; a world that diverged has lost its step
+  void judged(int32_t env, Verdict* verdict, bool finite);
   void lose_step(int32_t env, uint32_t status);
   void close_step(int32_t env, const Verdict& verdict, uint32_t status, bool lost);
   bool costs_count(const Verdict& verdict) const;  // column 0, or one with a limit, is above 0
   void write_verdict(int32_t env, const Verdict& verdict, uint32_t status);
+
+  // --- stepping a task that takes rows
+  void reset_rows(const uint64_t* seeds, const uint8_t* mask);
+  void step_rows(const uint8_t* mask);
+  template <class F>
+  void control_step_rows(F&& wanted);
+  void engine_rows();
+  void finish_rows();
+  void begin_rows();
+  template <class F>
+  void pick(F&& wanted);
+  template <class F>
+  void call_rows(F&& f);
   // f(begin, end, block) for runs of worlds that are all of them together, f(env, block) for every world, on
   // the workers. Both rethrow the error of the lowest world when all is done. `whole`: one run for each
   // block, for worlds that are named by a mask: their groups are fullest in long runs.
@@ -162,6 +201,7 @@ struct Pool::Impl : ResolvedPoolConfig {
   char* task_errors = nullptr;           // [num_envs][kErrorTextSize] of a host's task; null for other ones
   unsigned char* tried_state = nullptr;  // [state_bytes] of a record that is looked at
   WorldDisturbance tried;                // likewise
+  RowWork work;                          // of a task that takes rows
   unsigned char* pristine = nullptr;     // a world's state before anything happened: what a reset starts from
   size_t pristine_size = 0;
   Starts starts;
@@ -215,6 +255,26 @@ void Pool::Impl::each_world(const uint8_t* mask, F&& f) {
     for (int32_t env = begin; env < end; ++env)
       if (!mask || mask[env]) block.attempt(env, [&] { f(env, block); });
   });
+}
+
+template <class F>
+Code Pool::Impl::attempt_task(int32_t env, F&& f) {
+  try {
+    f();
+    return Code::kOk;
+  } catch (const Error& e) {
+    if (!task_errors) throw;
+    keep_error(env, e.text);
+    return e.code;
+  }
+}
+
+template <class F>
+void Pool::Impl::look_round(int32_t begin, int32_t end, Block& block, F&& named) {
+  if (!sense.any()) return;
+  for (int32_t env = begin; env < end; ++env)
+    if (named(env) && slots[env].episode.step % sense.every == 0)
+      block.attempt(env, [&] { see(env, block); });
 }
 
 }  // namespace rdm

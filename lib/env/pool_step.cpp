@@ -32,24 +32,30 @@ void mend_row(float* row, int32_t count) {
 void Pool::reset(const uint64_t* seeds, const uint8_t* mask) {
   const FpMode mode;
   Impl& m = *impl_;
+  if (m.task->takes_rows()) return m.reset_rows(seeds, mask);
   m.each_world(mask, [&](int32_t env, Block& block) {
     if (seeds) m.name_streams(env, seeds[env], 0);
     const Code code = m.begin_episode(env);
     m.clear_rows(env);
     m.buffers.status[env] = m.slots[env].status;
     if (code == Code::kOk) return m.see(env, block);
-    Episode& e = m.slots[env].episode;
-    e.phase = Phase::kNew;
-    e.step = 0;
-    e.terminated = e.truncated = 0;
+    m.forget_episode(env);
     fail(code, "%s", task_error(env));
   });
+}
+
+void Pool::Impl::forget_episode(int32_t env) {
+  Episode& e = slots[env].episode;
+  e.phase = Phase::kNew;
+  e.step = 0;
+  e.terminated = e.truncated = 0;
 }
 
 void Pool::step(const uint8_t* mask) {
   const FpMode mode;
   Impl& m = *impl_;
   m.check_ready(mask);
+  if (m.task->takes_rows()) return m.step_rows(mask);
   m.each_block(
       [&](int32_t begin, int32_t end, Block& block) {
         const auto named = [&](int32_t env) { return !mask || mask[env]; };
@@ -58,10 +64,7 @@ void Pool::step(const uint8_t* mask) {
         m.control_step(begin, end, block, named);
         for (int32_t r = 1; r < m.repeat; ++r)
           m.control_step(begin, end, block, [&](int32_t env) { return named(env) && m.slots[env].goes_on; });
-        if (!m.sense.any()) return;
-        for (int32_t env = begin; env < end; ++env)
-          if (named(env) && m.slots[env].episode.step % m.sense.every == 0)
-            block.attempt(env, [&] { m.see(env, block); });
+        m.look_round(begin, end, block, named);
       },
       mask != nullptr);
 }
@@ -122,18 +125,10 @@ void Pool::Impl::check_ready(const uint8_t* mask) const {
   }
 }
 
-template <class F>
-Code Pool::Impl::attempt_task(int32_t env, F&& f) {
-  try {
-    f();
-    return Code::kOk;
-  } catch (const Error& e) {
-    if (!task_errors) throw;
-    char text[kErrorTextSize + 32];
-    std::snprintf(text, sizeof text, "world %d: %s", env, e.text);
-    copy_text(task_errors + static_cast<size_t>(env) * kErrorTextSize, kErrorTextSize, text);
-    return e.code;
-  }
+void Pool::Impl::keep_error(int32_t env, const char* why) {
+  char text[kErrorTextSize + 32];
+  std::snprintf(text, sizeof text, "world %d: %s", env, why);
+  copy_text(task_errors + static_cast<size_t>(env) * kErrorTextSize, kErrorTextSize, text);
 }
 
 const char* Pool::task_error(int32_t env) const {
@@ -141,51 +136,73 @@ const char* Pool::task_error(int32_t env) const {
   return texts ? texts + static_cast<size_t>(env) * kErrorTextSize : "";
 }
 
+// The state that a new world has: nothing of the last episode is left in the engine.
+void Pool::Impl::renew(int32_t env) {
+  Reader in(pristine, pristine_size, "pristine world");
+  slots[env].world->take(in);
+  std::memset(slots[env].task_state, 0, task->state_bytes());
+}
+
 Code Pool::Impl::begin_episode(int32_t env) {
+  const Slot& s = slots[env];
+  const Episode before = open_episode(env);
+  bool good = true;
+  const Code code = attempt_task(env, [&] {
+    task->reset(*s.world, s.task_state, slots[env].episode.reset);
+    if (disturbance.any()) slots[env].disturbance.begin(disturbance, *task);
+    task->observe(*s.world, s.task_state, obs(env));
+    good = show_first(env);
+  });
+  return settle_episode(env, before, code, good);
+}
+
+Episode Pool::Impl::open_episode(int32_t env) {
   Slot& s = slots[env];
   Episode& e = s.episode;
   const Episode before = e;
   ++s.course;
-  // from the state that a new world has: nothing of the last episode is left in the engine
-  const auto renew = [&] {
-    Reader in(pristine, pristine_size, "pristine world");
-    s.world->take(in);
-    std::memset(s.task_state, 0, task->state_bytes());
-  };
-  renew();
+  renew(env);
   e.phase = Phase::kRunning;
   e.step = 0;
   e.terminated = e.truncated = 0;
   e.sum_reward = 0;
   for (double& sum : e.sum_cost) sum = 0;
-  bool good = true;
-  const Code code = attempt_task(env, [&] {
-    task->reset(*s.world, s.task_state, e.reset);
-    if (disturbance.any()) s.disturbance.begin(disturbance, *task);
-    good = observe(env, 0, obs(env));
-    if (starts.share > 0) good |= begin_at_start(env);
-  });
+  return before;
+}
+
+bool Pool::Impl::show_first(int32_t env) {
+  bool good = show(env, 0, obs(env));
+  if (starts.share > 0) good |= begin_at_start(env);
+  return good;
+}
+
+Code Pool::Impl::settle_episode(int32_t env, const Episode& before, Code code, bool good) {
+  Slot& s = slots[env];
   s.status = 0;
   if (code == Code::kOk) {
     if (!good) count(env, kStatusDiverged);
     return code;
   }
   count(env, kStatusTask);
-  renew();
-  const Stream drawn = e.reset;  // the next attempt draws others
-  e = before;
-  e.reset = drawn;
+  renew(env);
+  const Stream drawn = s.episode.reset;  // the next attempt draws others
+  s.episode = before;
+  s.episode.reset = drawn;
   std::memcpy(obs(env), final_obs(env), sizeof(float) * static_cast<size_t>(obs_dim));
   return code;
 }
 
 bool Pool::Impl::observe(int32_t env, int32_t step, float* row) {
-  Slot& s = slots[env];
+  const Slot& s = slots[env];
   task->observe(*s.world, s.task_state, row);
+  return show(env, step, row);
+}
+
+bool Pool::Impl::show(int32_t env, int32_t step, float* row) {
   const bool good = clip_row(row, obs_dim, obs_limit);
   if (!good && step == 0) mend_row(row, obs_dim);
   if (disturbance.fields.empty() || (!good && step > 0)) return good;
-  s.disturbance.show(disturbance, step, row);
+  slots[env].disturbance.show(disturbance, step, row);
   return clip_row(row, obs_dim, obs_limit) && good;
 }
 
@@ -251,25 +268,36 @@ void Pool::Impl::step_group(Block& block) {
 }
 
 void Pool::Impl::finish_step(int32_t env) {
+  if (engine_failed(env)) return;
   const Slot& s = slots[env];
-  const uint32_t status = s.world->status();
-  const int32_t contacts = s.world->num_contacts();
-  Counters& c = slots[env].counters;
-  c.contacts_max = contacts > c.contacts_max ? contacts : c.contacts_max;
-  c.contacts_sum += contacts;
-  ++c.steps;
-  if (status & kStatusDiverged) return lose_step(env, status);
   Verdict verdict;
   bool finite = false;
   const Code code = attempt_task(env, [&] {
     verdict = task->judge(*s.world, s.task_state, s.episode.step + 1);
-    finite = observe(env, s.episode.step + 1, final_obs(env)) && sound(verdict, cost_dim);
+    finite = observe(env, s.episode.step + 1, final_obs(env));
   });
-  if (code != Code::kOk) return lose_step(env, status | kStatusTask);
-  if (!finite) return lose_step(env, status | kStatusDiverged);
-  if (disturbance.end_on_cost && costs_count(verdict)) verdict.terminated = true;
+  if (code != Code::kOk) return lose_step(env, s.world->status() | kStatusTask);
+  judged(env, &verdict, finite);
+}
+
+bool Pool::Impl::engine_failed(int32_t env) {
+  const World& world = *slots[env].world;
+  const int32_t contacts = world.num_contacts();
+  Counters& c = slots[env].counters;
+  c.contacts_max = contacts > c.contacts_max ? contacts : c.contacts_max;
+  c.contacts_sum += contacts;
+  ++c.steps;
+  if (!(world.status() & kStatusDiverged)) return false;
+  lose_step(env, world.status());
+  return true;
+}
+
+void Pool::Impl::judged(int32_t env, Verdict* verdict, bool finite) {
+  const uint32_t status = slots[env].world->status();
+  if (!finite || !sound(*verdict, cost_dim)) return lose_step(env, status | kStatusDiverged);
+  if (disturbance.end_on_cost && costs_count(*verdict)) verdict->terminated = true;
   std::memcpy(obs(env), final_obs(env), sizeof(float) * static_cast<size_t>(obs_dim));
-  close_step(env, verdict, status, false);
+  close_step(env, *verdict, status, false);
 }
 
 bool Pool::Impl::costs_count(const Verdict& verdict) const {
@@ -296,6 +324,10 @@ void Pool::Impl::close_step(int32_t env, const Verdict& verdict, uint32_t status
   if (slots[env].goes_on) return;
   e.phase = Phase::kEnded;
   if (config.autoreset != Autoreset::kSameStep) return;
+  if (work.ended) {  // they begin together
+    work.ended[env] = 1;
+    return;
+  }
   begin_episode(env);
   buffers.status[env] |= slots[env].status;  // what went wrong in the reset
 }
@@ -303,7 +335,10 @@ void Pool::Impl::close_step(int32_t env, const Verdict& verdict, uint32_t status
 // Where the task fails in it the world goes on showing the end that it had, and the
 // next step is another attempt.
 void Pool::Impl::restart(int32_t env) {
-  const Code code = begin_episode(env);
+  show_reset(env, begin_episode(env));
+}
+
+void Pool::Impl::show_reset(int32_t env, Code code) {
   clear_rows(env);
   buffers.status[env] = slots[env].status;
   if (code == Code::kOk) return;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 
+#include "base/error.hpp"
 #include "base/option.hpp"
 #include "base/rng.hpp"
 #include "physics/world.hpp"
@@ -52,6 +53,20 @@ struct Verdict {
   bool terminated = false, success = false;
 };
 
+// The worlds that a task's function is called for at once; what it fills is there before.
+struct TaskRows {
+  int32_t count = 0;
+  World** worlds = nullptr;     // [count]
+  void** states = nullptr;      // [count]
+  Code* codes = nullptr;        // [count] kOk, unless the function failed for that world alone; then
+  char** texts = nullptr;       // [count] each [kErrorTextSize] says why
+  Stream** streams = nullptr;   // [count] reset
+  float* actions = nullptr;     // [count][action_dim] control: clipped
+  int32_t* steps = nullptr;     // [count] judge
+  Verdict* verdicts = nullptr;  // [count] judge
+  float* obs = nullptr;         // [count][obs_dim] observe
+};
+
 // A half space of clipped actions, normal . a <= bound.
 struct Guard {
   int32_t column = 0;  // of the cost that is 0 within it
@@ -82,6 +97,13 @@ class Task {
   virtual Verdict judge(World& world, void* state, int32_t step) const = 0;
   // Whoever asks for an observation then bounds its entries by +-obs_limit().
   virtual void observe(const World& world, const void* state, float* obs) const = 0;
+  // Whether the pool calls these, on the thread that called it and for all worlds together, in the place of the
+  // four above. An Error that comes out is every world's of the call.
+  virtual bool takes_rows() const { return false; }
+  virtual void reset_rows(const TaskRows&) const {}
+  virtual void control_rows(const TaskRows&) const {}
+  virtual void judge_rows(const TaskRows&) const {}
+  virtual void observe_rows(const TaskRows&) const {}
   virtual float obs_limit() const { return std::numeric_limits<float>::infinity(); }
   // What the local grid of voxels is about, m: the first free body, unless the task knows better.
   virtual Vec3 focus(const World& world, const void* state) const;

@@ -225,6 +225,27 @@ class Scale(enum.IntEnum):
     FRICTION = 12  # [0, 1000] of two materials, index and other
 
 
+class Quantity(enum.IntEnum):
+    """of worlds, each so many doubles"""
+
+    Q = 0  # 1: coordinate of a joint, rad (m)
+    QD = 1  # 1: its velocity, rad/s (m/s)
+    TARGET = 2  # 1: what its drive goes for; can be set
+    TORQUE = 3  # 1: of its drive, mean over the step, N m (N)
+    LINK = 4  # 13: p, q, v, w as rdm_motion
+    BASE = 5  # 13: likewise, of a robot; can be set where it is free
+    BODY = 6  # 13: likewise; can be set
+    SHAPE = 7  # 7: p, q
+    SENSOR = 8  # 6: force, torque as rdm_world_get_sensor
+    TOUCH = 9  # 2: pairs and force as rdm_world_get_touch
+    JOINT = 10  # 2: coordinate and velocity; all joints of robot `first`
+    COMMAND = 11  # 1: in [-1, 1]; all commands of one robot, whose number is `first`
+    FEEDFORWARD = 12  # 1: effort of a joint, N m (N)
+    BODY_PUSH = 13  # 6: force and torque as rdm_world_push_body
+    BASE_PUSH = 14  # 6: as rdm_world_push_base
+    LINK_PUSH = 15  # 6: force and point as rdm_world_push_link
+
+
 class Build(Record):
     """The values of rdm_build."""
 
@@ -3227,8 +3248,48 @@ class rdm_verdict(Structure):
     ]
 
 
+class rdm_task_rows(Structure):
+    """what a function of many worlds is called with; row i is of worlds[i]
+
+    struct_size: bytes
+    count: of worlds, 1 to 256
+    worlds: [count] in the order of their numbers
+    states: [count][state_bytes] copies, which go back where the function may change them; NULL with state_bytes
+        0
+    results: [count] RDM_OK; another code fails that world alone
+    randoms: [count] reset: as its `random`
+    actions: [count][action_dim] control
+    steps: [count] judge: control steps of the episode, from 1
+    verdicts: [count] judge: zeroed before
+    obs: [count][obs_dim] observe: all fields
+    """
+
+    struct_size: int
+    count: int
+    worlds: Any
+    states: int | None
+    results: int | None
+    randoms: Any
+    actions: int | None
+    steps: int | None
+    verdicts: Any
+    obs: int | None
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("count", c_int32),
+        ("worlds", POINTER(c_void_p)),
+        ("states", c_void_p),
+        ("results", c_void_p),
+        ("randoms", POINTER(rdm_random)),
+        ("actions", c_void_p),
+        ("steps", c_void_p),
+        ("verdicts", POINTER(rdm_verdict)),
+        ("obs", c_void_p),
+    ]
+
+
 class FieldDef(Record):
-    """The values of rdm_field_def."""
+    """what a function of many worlds is called with; row i is of worlds[i]"""
 
     name: str  # unique, at most 31 characters: "cup.position"
     unit: str  # of a stored 1: "m", "5 rad/s", "1"
@@ -3238,7 +3299,9 @@ class FieldDef(Record):
 
 
 class rdm_field_def(Structure):
-    """name: unique, at most 31 characters: "cup.position"
+    """what a function of many worlds is called with; row i is of worlds[i]
+
+    name: unique, at most 31 characters: "cup.position"
     unit: of a stored 1: "m", "5 rad/s", "1"
     count: entries
     low: what no entry leaves; low equal to high: none but obs_limit
@@ -3263,7 +3326,7 @@ class rdm_field_def(Structure):
 
 
 class CostDef(Record):
-    """The values of rdm_cost_def."""
+    """what a function of many worlds is called with; row i is of worlds[i]"""
 
     name: str  # unique: "touch"
     help: str  # one line
@@ -3271,7 +3334,9 @@ class CostDef(Record):
 
 
 class rdm_cost_def(Structure):
-    """name: unique: "touch"
+    """what a function of many worlds is called with; row i is of worlds[i]
+
+    name: unique: "touch"
     help: one line
     limit: default limit on the sum over an episode; < 0: none
     """
@@ -3287,7 +3352,7 @@ class rdm_cost_def(Structure):
 
 
 class OptionDef(Record):
-    """The values of rdm_option_def."""
+    """what a function of many worlds is called with; row i is of worlds[i]"""
 
     key: str  # letters, digits, '_', '-', '.'
     help: str  # one line, with the unit; unused of one that every task has
@@ -3301,7 +3366,9 @@ class OptionDef(Record):
 
 
 class rdm_option_def(Structure):
-    """key: letters, digits, '_', '-', '.'
+    """what a function of many worlds is called with; row i is of worlds[i]
+
+    key: letters, digits, '_', '-', '.'
     help: one line, with the unit; unused of one that every task has
     text: default of a text option, or of a number that is a range, else NULL
     choices: text: allowed words "a|b|c", NULL: any; number, integer: "a..b": takes a range too; else NULL
@@ -3335,7 +3402,7 @@ class rdm_option_def(Structure):
 
 
 class CameraDef(Record):
-    """The values of rdm_camera_def."""
+    """what a function of many worlds is called with; row i is of worlds[i]"""
 
     name: str  # unique: "front"
     eye: tuple[float, ...]  # m, in the frame that mount names
@@ -3348,7 +3415,9 @@ class CameraDef(Record):
 
 
 class rdm_camera_def(Structure):
-    """name: unique: "front"
+    """what a function of many worlds is called with; row i is of worlds[i]
+
+    name: unique: "front"
     eye: m, in the frame that mount names
     target: m, likewise; the optical axis runs from eye to target
     fov_y: vertical field of view, rad, 0.01 to 3
@@ -3383,7 +3452,9 @@ class rdm_camera_def(Structure):
 
 
 class rdm_task_def(Structure):
-    """struct_size: bytes, set by rdm_task_def_init
+    """what a function of many worlds is called with; row i is of worlds[i]
+
+    struct_size: bytes, set by rdm_task_def_init
     max_steps: control steps of an episode: default of the option max_steps; default 100
     name: letters, digits, '_', '-', '.'; at most 40
     summary: one line; NULL: none
@@ -3413,6 +3484,13 @@ class rdm_task_def(Structure):
     check_state: FORMAT for a saved state that no world can have: indices out of range, numbers that are not
         finite. NULL: all are good
     release: called once, when the task was destroyed and its last pool is gone. NULL: none
+    reset_many: In the place of the functions above, for many worlds at once; NULL: none. Where one is given the
+        function of one world may be NULL. A pool calls them on the thread that called it, for up to 256 worlds
+        together, between two steps of its engine: a runtime is then entered once a step and not once a world. A
+        row depends on its own world alone, as rdm_task_check tries. What they return is of all rows
+    control_many: as reset_many, in the place of control
+    judge_many: as reset_many, in the place of judge
+    observe_many: as reset_many, in the place of observe
     """
 
     struct_size: int
@@ -3444,6 +3522,10 @@ class rdm_task_def(Structure):
     observe: Any
     check_state: Any
     release: Any
+    reset_many: Any
+    control_many: Any
+    judge_many: Any
+    observe_many: Any
     _fields_ = [
         ("struct_size", c_uint32),
         ("max_steps", c_int32),
@@ -3474,6 +3556,10 @@ class rdm_task_def(Structure):
         ("observe", CFUNCTYPE(c_int32, c_void_p, c_void_p, c_void_p, c_void_p, c_void_p)),
         ("check_state", CFUNCTYPE(c_int32, c_void_p, c_void_p, c_void_p)),
         ("release", CFUNCTYPE(None, c_void_p)),
+        ("reset_many", CFUNCTYPE(c_int32, c_void_p, c_void_p, POINTER(rdm_task_rows))),
+        ("control_many", CFUNCTYPE(c_int32, c_void_p, c_void_p, POINTER(rdm_task_rows))),
+        ("judge_many", CFUNCTYPE(c_int32, c_void_p, c_void_p, POINTER(rdm_task_rows))),
+        ("observe_many", CFUNCTYPE(c_int32, c_void_p, c_void_p, POINTER(rdm_task_rows))),
     ]
 
 
@@ -3542,6 +3628,7 @@ STRUCTS: dict[str, type[Structure]] = {
     "rdm_factor": rdm_factor,
     "rdm_random": rdm_random,
     "rdm_verdict": rdm_verdict,
+    "rdm_task_rows": rdm_task_rows,
     "rdm_field_def": rdm_field_def,
     "rdm_cost_def": rdm_cost_def,
     "rdm_option_def": rdm_option_def,
@@ -3642,6 +3729,11 @@ ROWS: dict[str, dict[str, Rows]] = {
         "qd": Rows("float64", ("count",)),
         "target": Rows("float64", ("count",)),
         "torque": Rows("float64", ("count",)),
+    },
+    "rdm_task_rows": {
+        "actions": Rows("float32", ("count", "action_dim")),
+        "steps": Rows("int32", ("count",)),
+        "obs": Rows("float32", ("count", "obs_dim")),
     },
     "rdm_task_def": {
         "hold": Rows("float32", ("action_dim",)),
@@ -5252,6 +5344,22 @@ FUNCTIONS: dict[str, Function] = {
         {"force": Rows("float64", ("3",)), "point": Rows("float64", ("3",))}, True,
         """Pushes during the next step, world axes: force [3] (N) at the centre of mass and torque [3] (N
         m); of a link at `point` [3].
+        """),
+    "rdm_world_get_many": Function(
+        c_int32, {"worlds": POINTER(c_void_p), "n": c_size_t, "what": c_int32, "first": c_int32, "count": c_size_t, "x": c_void_p},
+        {}, True,
+        """The quantity `what` of items first to first + count - 1 of each of n worlds to (or from) x
+        [n][count][width], width the doubles of one. What is set is what the function of one world sets,
+        row by row: an error leaves the rows before it set. RANGE for items that the scene does not have,
+        and of those that are set together for another count.
+        """),
+    "rdm_world_set_many": Function(
+        c_int32, {"worlds": POINTER(c_void_p), "n": c_size_t, "what": c_int32, "first": c_int32, "count": c_size_t, "x": c_void_p},
+        {}, True,
+        """The quantity `what` of items first to first + count - 1 of each of n worlds to (or from) x
+        [n][count][width], width the doubles of one. What is set is what the function of one world sets,
+        row by row: an error leaves the rows before it set. RANGE for items that the scene does not have,
+        and of those that are set together for another count.
         """),
     "rdm_random_bits": Function(
         c_uint64, {"random": POINTER(rdm_random)},
