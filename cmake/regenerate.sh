@@ -21,4 +21,4 @@ fi
 python3 capi/python/generate_abi.py
 bash cmake/tables.sh "$build/bin/redman"
 bash cmake/truth_table.sh "$build" short || echo "the truth table has rows that are off: see above"
-git status --short -- tests/golden capi/layout.golden capi/python/redman/_abi.py '*.md'
+git status --short -- tests/golden capi/layout.golden capi/python/redman/_abi.py capi/python/redman/_import_abi.py '*.md'

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Writes redman/_abi.py from the public headers: constants, enums, structs, functions, shapes of rows, docstrings.
+"""Writes redman/_abi.py from the public headers: constants, enums, structs, functions, shapes of rows, docstrings; and
+redman/_import_abi.py from redman/import.h, which another library has.
 
-    python3 generate_abi.py            writes redman/_abi.py
-    python3 generate_abi.py --check    ends with 1 and a word when that file is not what the headers say
+    python3 generate_abi.py            writes both
+    python3 generate_abi.py --check    ends with 1 and a word when a file is not what the headers say
 
 It needs no compiler, for the headers are regular: one declaration is `RDM_API type rdm_name(...);`,
 `typedef struct rdm_name { ... } rdm_name;` or `enum rdm_name { ... };`; a comment stands behind what it tells of, or
@@ -22,6 +23,7 @@ from typing import Iterator, NamedTuple
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
 OUTPUT = HERE / "redman" / "_abi.py"
+IMPORT_OUTPUT = HERE / "redman" / "_import_abi.py"
 
 POSE = "rdm_pose"  # arrays of poses are rows of 7 doubles
 SCALARS = {
@@ -262,6 +264,11 @@ def result_type(c: str) -> str:
     return SCALARS[c]
 
 
+def wrapped(name: str, doc: str) -> list[str]:
+    """The lines of a docstring for a member."""
+    return textwrap.wrap(f"{name}: {' '.join(doc.split())}".rstrip(": "), 108, subsequent_indent="    ")
+
+
 HINTS = {"c_float": "float", "c_double": "float", "c_char_p": "bytes | None", "c_void_p": "int | None"}
 
 
@@ -313,6 +320,25 @@ class Function(NamedTuple):
 '''
 
 
+IMPORT_HEADER = '''\
+"""The importer's C ABI for ctypes. Written by generate_abi.py from redman/import.h: change the header, not this file."""
+from __future__ import annotations
+
+import enum
+from ctypes import (CDLL, POINTER, Structure, c_char_p, c_double, c_int32, c_size_t, c_uint32, c_void_p)
+
+from ._abi import Function, Rows, rdm_object_def, rdm_robot_def
+from ._record import Record
+
+
+'''
+
+
+def import_header() -> str:
+    """The text of the header of libredman_import."""
+    return (ROOT / "include" / "redman" / "import.h").read_text(encoding="utf-8")
+
+
 def headers() -> str:
     """The text of the public headers of libredman, as redman.h includes them: the stable ones first."""
     command = ["sh", str(ROOT / "cmake" / "headers.sh"), str(ROOT / "include")]
@@ -323,8 +349,6 @@ def headers() -> str:
 def generate(text: str) -> str:
     """The module for the text of the headers."""
     found = list(declarations(text))
-    structs = {d.name for d in found if d.kind == "struct"}
-    callbacks = {d.name for d in found if d.kind == "callback"}
     out = [HEADER]
     for d in found:
         if d.kind == "constant" and d.body.strip().isdecimal():
@@ -332,6 +356,20 @@ def generate(text: str) -> str:
     numbers = [next(d.body for d in found if d.name == f"RDM_VERSION_{part}") for part in ("MAJOR", "MINOR", "PATCH")]
     out.append("RDM_VERSION = RDM_VERSION_MAJOR * 1000000 + RDM_VERSION_MINOR * 1000 + RDM_VERSION_PATCH\n"
                f'VERSION = "{".".join(number.strip() for number in numbers)}"  # that these types are of\n\n\n')
+    return "".join(out) + types_text(found, found)
+
+
+def generate_import(text: str, base: str) -> str:
+    """The module for the text of the importer's header, whose types are also those of the base headers."""
+    found = list(declarations(text))
+    return IMPORT_HEADER + types_text(found, [*declarations(base), *found])
+
+
+def types_text(found: list[Declared], known: list[Declared]) -> str:
+    """Enums, structs and functions that were found; known: whose types they may have."""
+    structs = {d.name for d in known if d.kind == "struct"}
+    callbacks = {d.name for d in known if d.kind == "callback"}
+    out = []
     for d in found:
         if d.kind != "enum":
             continue
@@ -343,10 +381,12 @@ def generate(text: str) -> str:
             rows = [(name.replace("RDM_ERROR_", prefix), value, doc) for name, value, doc in rows]
         flags = len(rows) > 1 and all(value > 0 and value & (value - 1) == 0 for _, value, _ in rows)
         about = text_of(match[0].strip()) if (match := re.match(r"\s*" + COMMENT, d.body, re.S)) else d.doc
+        told = [about or d.name, ""]
+        for name, value, doc in rows:
+            told += wrapped(f"{name.removeprefix(prefix)} = {value}", doc)
         out.append(f"class {camel(d.name)}(enum.{'IntFlag' if flags else 'IntEnum'}):\n"
-                   f"    {quoted(about or d.name, '    ')}\n\n")
-        out += [f"    {name.removeprefix(prefix)} = {value}{'  # ' + doc if doc else ''}\n"
-                for name, value, doc in rows]
+                   f"    {quoted(chr(10).join(told), '    ')}\n\n")
+        out += [f"    {name.removeprefix(prefix)} = {value}\n" for name, value, _ in rows]
         out.append("\n\n")
     for d in found:
         if d.kind == "callback":
@@ -387,9 +427,15 @@ def declare(library: CDLL) -> None:
     return "".join(out)
 
 
+def about_struct(d: Declared) -> str:
+    """What is said behind the brace of a struct, or above it."""
+    inside = re.match(r"[ \t]*(" + COMMENT + ")", d.body, re.S)
+    return text_of(inside[1]) if inside else d.doc
+
+
 def struct_text(d: Declared, structs: set[str], callbacks: set[str]) -> str:
     listed, hints = [], []
-    about = [d.doc, ""] if d.doc else []
+    about = [about_struct(d), ""] if about_struct(d) else []
     for variable, proto in fields(d):
         if proto:
             kind, hint = prototype(proto, structs, callbacks), "Any"
@@ -402,8 +448,7 @@ def struct_text(d: Declared, structs: set[str], callbacks: set[str]) -> str:
             hint = HINTS.get(kind, kind if kind in structs else "Any" if kind.startswith("POINTER") or kind in callbacks else "int")
         listed.append(f'        ("{variable.name}", {kind}),\n')
         hints.append(f"    {variable.name}: {hint}\n")
-        about += textwrap.wrap(f"{variable.name}: {' '.join(variable.doc.split())}".rstrip(": "), 108,
-                               subsequent_indent="    ")
+        about += wrapped(variable.name, variable.doc)
     doc = quoted("\n".join(about), "    ")
     return (f"{record_text(d)}class {d.name}(Structure):\n    {doc}\n\n{''.join(hints)}"
             f"    _fields_ = [\n{''.join(listed)}    ]\n\n\n")
@@ -415,6 +460,7 @@ RECORD_HINTS = {"c_float": "float", "c_double": "float"}
 def record_text(d: Declared) -> str:
     """The Record of a struct that holds values alone, "" for one with pointers or structs in it."""
     lines = []
+    about = [about_struct(d) or f"The values of {d.name}.", ""]
     for variable, proto in fields(d):
         if proto or (variable.pointer and variable.type != "const char *") or variable.base not in (*SCALARS, "char"):
             return ""
@@ -423,20 +469,21 @@ def record_text(d: Declared) -> str:
         hint = "str" if variable.base == "char" else RECORD_HINTS.get(SCALARS[variable.base], "int")
         hint = f"tuple[{hint}, ...]" if variable.length else hint
         hint += " | None" if "NULL" in variable.doc and hint == "str" else ""
-        doc = " ".join(variable.doc.split())
-        lines.append(f"    {variable.name}: {hint}{'  # ' + doc if doc else ''}\n")
-    about = quoted(d.doc or f"The values of {d.name}.", "    ")
-    return f"class {camel(d.name)}(Record):\n    {about}\n\n{''.join(lines)}\n\n"
+        about += wrapped(variable.name, variable.doc)
+        lines.append(f"    {variable.name}: {hint}\n")
+    doc = quoted("\n".join(about), "    ")
+    return f"class {camel(d.name)}(Record):\n    {doc}\n\n{''.join(lines)}\n\n"
 
 
 def main() -> int:
-    text = generate(headers())
+    texts = {OUTPUT: generate(headers()), IMPORT_OUTPUT: generate_import(import_header(), headers())}
     if "--check" in sys.argv[1:]:
-        if OUTPUT.read_text(encoding="utf-8") == text:
-            return 0
-        print(f"{OUTPUT.name} is not what the headers say: run {Path(__file__).name}", file=sys.stderr)
-        return 1
-    OUTPUT.write_text(text, encoding="utf-8")
+        old = [path for path, text in texts.items() if not path.exists() or path.read_text(encoding="utf-8") != text]
+        for path in old:
+            print(f"{path.name} is not what the headers say: run {Path(__file__).name}", file=sys.stderr)
+        return 1 if old else 0
+    for path, text in texts.items():
+        path.write_text(text, encoding="utf-8")
     return 0
 
 

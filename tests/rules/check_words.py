@@ -106,7 +106,7 @@ texts += [(p, page_text(p)) for p in files("*.md") if "examples/results/" not in
 texts += [(p, comments(p)) for p in files("include/redman/*")]
 texts += [(p, literals(p)) for p in files("examples/redman/*.cpp", "examples/redman/*.hpp", "lib/*.cpp", "lib/*.hpp", "lib/*.inl",
                                           "tasks/*.cpp", "tasks/*.hpp", "algos/*.cpp", "algos/*.hpp", "capi/*.cpp", "capi/*.hpp")]
-texts += [(p, docstrings(p)) for p in files("capi/python/redman/*.py") if p.name != "_abi.py"]
+texts += [(p, docstrings(p)) for p in files("capi/python/redman/*.py") if not p.name.endswith("_abi.py")]
 
 hits: list[str] = []
 count: collections.Counter[str] = collections.Counter()

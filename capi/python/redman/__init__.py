@@ -1,50 +1,92 @@
 """redman: safe dexterous manipulation. Worlds, learners and policies of the library libredman, for numpy.
 
     import redman
-    pool = redman.Pool("hand_over_safe_finger", num_envs=16)
+
+    pool = redman.Pool("hand_over_safe_finger", num_envs=16, seed=7)        # worlds
     pool.reset()
-    agent = redman.Agent(pool)
-    for _ in range(10):
-        print(agent.rollout(pool))
-    agent.policy().save("policy.rdm")
+    pool.step(pool.baseline("random"))                                      # pool.obs, pool.reward, pool.cost, ...
+
+    run = redman.train("hand_over_safe_finger", steps=1e6, out="runs/first")    # a policy
+    print(run.evaluate())
+    actor = redman.load("runs/first").actor(pool)
+    pool.step(actor())
+
+WHAT IS THERE. help(redman.Pool) and so on tell more.
+
+    what exists     tasks, task, algos, algo, robots, robot, objects, planner_options, shield_options
+    files           load; load_robot, load_object, load_task
+    worlds          Pool, Sensors, Guard; spec, memory; Map, sample_furthest
+    learners        Agent, Epoch, CostLimits, Options; Recording, CloneReport; Ranks
+    policies        Policy, Actor, Origin, HoldWarning; Planner, PlanInfo; Shield, ShieldRow, project
+    runs            train, Run, Callback; evaluate, Evaluation, Player; curve, Curve, Curves; stats
+    your own        Robot.create, Object.create, a .task file; check_task, c_function
+    environments    redman.gym, redman.sb3, redman.safety, redman.omnisafe; make, make_vec
+    records         Algo, Build, Camera, Cost, Field, Joint, MapInfo, Note, Object, Option, PlannerSpec, PolicyInfo, PoolStats,
+                    Poses, PretrainReport, RayHit, RecordingInfo, Robot, Shape, ShieldStats, Spec, Task
+    numbers         Autoreset, BaselineKind, Feature, JointKind, NoteKind, OptionKind, OptionLevel, ResultCode, RobotKind,
+                    ShapeKind, ShieldKind, Status
+    errors          Error, of which are AllocationError, ArgumentError, CancelledError, FileError, FormatError, InternalError,
+                    MissingFileError, NotFoundError, PhysicsError, RangeError, StateError, UnsupportedError, UsageError,
+                    VersionError
+    the library     build, features, version
+
+RULES. Arrays are numpy's, [rows][...], and SI units hold: m, rad, N, s. pool.obs, pool.reward and their like are views that the
+next step writes: copy what is to stay. Same seed, same bytes, for any number of threads. A wrong argument is an error that says
+what it may be; an error is also the Python exception that one would expect, a NotFoundError a LookupError. A file stands where a
+name does: Pool("press.task"), options={"hand": "my.urdf", "object": "mug.object"}, evaluate("runs/first").
 """
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 from . import stats
-from ._abi import (Autoreset, BaselineKind, Build, JointKind, MapInfo, OptionKind, OptionLevel, PolicyInfo, PoolStats,
-                   RayHit, ResultCode, ShapeKind, ShieldKind, ShieldStats, Spec, Status)
+from ._abi import (Autoreset, BaselineKind, Build, Feature, JointKind, MapInfo, OptionKind, OptionLevel, PlannerSpec, PolicyInfo,
+                   PoolStats, PretrainReport, RayHit, RecordingInfo, ResultCode, RobotKind, ShapeKind, ShieldKind, ShieldStats,
+                   Spec, Status)
 from ._actor import Actor
 from ._agent import Agent, Epoch
 from ._callbacks import c_function
 from ._curve import Curve, Curves, curve
-from ._discovery import (Algo, Camera, Cost, Field, Joint, Object, Option, Robot, Shape, Task, algo, algos, build,
-                         objects, robots, shield_options, task, tasks)
+from ._discovery import (Algo, Camera, Cost, Field, Joint, Option, Shape, Task, algo, algos, build, features, shield_options,
+                         task, tasks)
 from ._error import (AllocationError, ArgumentError, CancelledError, Error, FileError, FormatError, InternalError,
                      MissingFileError, NotFoundError, PhysicsError, RangeError, StateError, UnsupportedError, UsageError,
                      VersionError)
 from ._hold import HoldWarning
+from ._import_abi import NoteKind
+from ._importer import load_object, load_robot, load_task
 from ._limits import CostLimits
+from ._load import load
+from ._make import make, make_vec
 from ._map import Map, sample_furthest
 from ._names import moved
+from ._object import Object, objects
 from ._options import Options
+from ._planner import PlanInfo, Planner, planner_options
 from ._play import Evaluation, Player, evaluate
 from ._policy import Origin, Policy
-from ._pool import Guard, Pool, Sensors, memory
+from ._pool import Guard, Pool, Sensors, check_task, memory, spec
+from ._ranks import Ranks
+from ._recording import Recording
+from ._robot import Note, Poses, Robot, robot, robots
 from ._shield import Shield, ShieldRow, project
+from ._teach import CloneReport
 from ._train import Callback, Run, train
 
 __version__ = version = build().version
 
 __all__ = [
     "Actor", "Agent", "Algo", "AllocationError", "ArgumentError", "Autoreset", "BaselineKind", "Build", "Callback", "Camera",
-    "CancelledError", "Cost", "CostLimits", "Curve", "Curves", "Epoch", "Error", "Evaluation", "Field", "FileError",
-    "FormatError", "Guard", "HoldWarning", "InternalError", "Joint", "JointKind", "Map", "MapInfo", "MissingFileError",
-    "NotFoundError", "Object", "Option", "OptionKind", "OptionLevel", "Options", "Origin", "PhysicsError", "Player", "Policy", "PolicyInfo",
-    "Pool", "PoolStats", "RangeError", "RayHit", "ResultCode", "Robot", "Run", "Sensors", "Shape", "ShapeKind", "Shield", "ShieldKind", "ShieldRow", "ShieldStats", "Spec", "StateError", "Status", "Task",
-    "UnsupportedError", "UsageError", "VersionError", "__version__", "algo", "algos", "build", "c_function", "curve",
-    "evaluate", "memory", "objects", "project", "robots", "sample_furthest", "shield_options", "stats", "task", "tasks", "train", "version",
+    "CancelledError", "CloneReport", "Cost", "CostLimits", "Curve", "Curves", "Epoch", "Error", "Evaluation", "Feature",
+    "Field", "FileError", "FormatError", "Guard", "HoldWarning", "InternalError", "Joint", "JointKind", "Map", "MapInfo",
+    "MissingFileError", "NotFoundError", "Note", "NoteKind", "Object", "Option", "OptionKind", "OptionLevel", "Options",
+    "Origin", "PhysicsError", "PlanInfo", "Planner", "PlannerSpec", "Player", "Policy", "PolicyInfo", "Pool", "PoolStats",
+    "Poses", "PretrainReport", "RangeError", "Ranks", "RayHit", "Recording", "RecordingInfo", "ResultCode", "Robot",
+    "RobotKind", "Run", "Sensors", "Shape", "ShapeKind", "Shield", "ShieldKind", "ShieldRow", "ShieldStats", "Spec",
+    "StateError", "Status", "Task", "UnsupportedError", "UsageError", "VersionError", "__version__", "algo", "algos", "build",
+    "c_function", "check_task", "curve", "evaluate", "features", "load", "load_object", "load_robot", "load_task", "make",
+    "make_vec", "memory", "objects", "planner_options", "project", "robot", "robots", "sample_furthest", "shield_options",
+    "spec", "stats", "task", "tasks", "train", "version",
 ]
 
 moved(globals(), __all__)  # what is public is of this module, in texts and in pickles

@@ -41,26 +41,45 @@ VERSION = "0.1.0"  # that these types are of
 
 
 class ResultCode(enum.IntEnum):
-    """values of rdm_result"""
+    """values of rdm_result
 
     OK = 0
-    ARGUMENT = -1  # NULL, wrong struct_size, not finite, malformed
-    RANGE = -2  # outside the documented bounds; index past the end
-    STATE = -3  # calls in the wrong order
-    MEMORY = -4  # the allocator refused
-    IO = -5  # file system
-    FORMAT = -6  # truncated, corrupt or foreign bytes
-    VERSION_MISMATCH = -7  # newer file, newer struct, other ABI
-    UNSUPPORTED = -8  # left out of this build, or not defined for this combination
-    PHYSICS = -9  # the physics engine gave up where no world could be flagged
-    NOT_FOUND = -10  # unknown name (the text offers the nearest), missing file
-    CANCELLED = -11  # the host ended the call; the handle is good
-    INTERNAL = -99  # a defect of redman
+    ARGUMENT = -1: NULL, wrong struct_size, not finite, malformed
+    RANGE = -2: outside the documented bounds; index past the end
+    STATE = -3: calls in the wrong order
+    MEMORY = -4: the allocator refused
+    IO = -5: file system
+    FORMAT = -6: truncated, corrupt or foreign bytes
+    VERSION_MISMATCH = -7: newer file, newer struct, other ABI
+    UNSUPPORTED = -8: left out of this build, or not defined for this combination
+    PHYSICS = -9: the physics engine gave up where no world could be flagged
+    NOT_FOUND = -10: unknown name (the text offers the nearest), missing file
+    CANCELLED = -11: the host ended the call; the handle is good
+    INTERNAL = -99: a defect of redman
+    """
+
+    OK = 0
+    ARGUMENT = -1
+    RANGE = -2
+    STATE = -3
+    MEMORY = -4
+    IO = -5
+    FORMAT = -6
+    VERSION_MISMATCH = -7
+    UNSUPPORTED = -8
+    PHYSICS = -9
+    NOT_FOUND = -10
+    CANCELLED = -11
+    INTERNAL = -99
 
 
 class Feature(enum.IntFlag):
     """The halves of the library: worlds, learners; and frozen policies, which a build may have without
     the learners.
+
+    SIM = 1
+    LEARN = 2
+    POLICY = 4
     """
 
     SIM = 1
@@ -69,7 +88,13 @@ class Feature(enum.IntFlag):
 
 
 class OptionKind(enum.IntEnum):
-    """of an option"""
+    """of an option
+
+    NUMBER = 0
+    INTEGER = 1
+    FLAG = 2
+    TEXT = 3
+    """
 
     NUMBER = 0
     INTEGER = 1
@@ -78,15 +103,29 @@ class OptionKind(enum.IntEnum):
 
 
 class OptionLevel(enum.IntEnum):
-    """whom an option is for"""
+    """whom an option is for
 
-    BASIC = 0  # all users: lists begin with these; rows of tasks of your own are
-    ADVANCED = 1  # those who tune
-    LEGACY = 2  # those who compare with the paper, an older release or another engine
+    BASIC = 0: all users: lists begin with these; rows of tasks of your own are
+    ADVANCED = 1: those who tune
+    LEGACY = 2: those who compare with the paper, an older release or another engine
+    """
+
+    BASIC = 0
+    ADVANCED = 1
+    LEGACY = 2
 
 
 class ShapeKind(enum.IntEnum):
-    """of rdm_shape_info"""
+    """of rdm_shape_info
+
+    SPHERE = 0
+    CAPSULE = 1
+    BOX = 2
+    CYLINDER = 3
+    PLANE = 4
+    ELLIPSOID = 5
+    HULL = 6
+    """
 
     SPHERE = 0
     CAPSULE = 1
@@ -98,7 +137,11 @@ class ShapeKind(enum.IntEnum):
 
 
 class JointKind(enum.IntEnum):
-    """of a joint"""
+    """of a joint
+
+    REVOLUTE = 0
+    PRISMATIC = 1
+    """
 
     REVOLUTE = 0
     PRISMATIC = 1
@@ -107,6 +150,10 @@ class JointKind(enum.IntEnum):
 class Autoreset(enum.IntEnum):
     """When a world begins again by itself: in the step that ended its episode, in the next, or
     never.
+
+    SAME_STEP = 0
+    NEXT_STEP = 1
+    OFF = 2
     """
 
     SAME_STEP = 0
@@ -115,18 +162,33 @@ class Autoreset(enum.IntEnum):
 
 
 class Status(enum.IntFlag):
-    """bits of rdm_buffers.status"""
+    """bits of rdm_buffers.status
 
-    CONTACTS = 1  # contacts beyond contacts_max were left out
-    DIVERGED = 2  # a value was not finite: the episode was truncated
-    BAD_ACTION = 4  # the row of actions was not finite: likewise
-    TASK = 8  # a function of a host's own task failed: likewise
-    SOLVER = 16  # contacts were not solved, not seen in engine ode: one was wrong by more than 1 m/s along its normal when the sweeps ended (much under something heavier, with few iterations), or gave way without end (contact_max_speed below 0.02 m/s)
-    SLOWED = 32  # a free body that turned by more than 3 rad in a substep was slowed to that
+    CONTACTS = 1: contacts beyond contacts_max were left out
+    DIVERGED = 2: a value was not finite: the episode was truncated
+    BAD_ACTION = 4: the row of actions was not finite: likewise
+    TASK = 8: a function of a host's own task failed: likewise
+    SOLVER = 16: contacts were not solved, not seen in engine ode: one was wrong by more than 1 m/s along its
+        normal when the sweeps ended (much under something heavier, with few iterations), or gave way without
+        end (contact_max_speed below 0.02 m/s)
+    SLOWED = 32: a free body that turned by more than 3 rad in a substep was slowed to that
+    """
+
+    CONTACTS = 1
+    DIVERGED = 2
+    BAD_ACTION = 4
+    TASK = 8
+    SOLVER = 16
+    SLOWED = 32
 
 
 class BaselineKind(enum.IntEnum):
-    """actions that nobody learned"""
+    """actions that nobody learned
+
+    ZERO = 0
+    HOLD = 1
+    RANDOM = 2
+    """
 
     ZERO = 0
     HOLD = 1
@@ -134,30 +196,49 @@ class BaselineKind(enum.IntEnum):
 
 
 class ActMode(enum.IntEnum):
-    """of rdm_agent_act"""
+    """of rdm_agent_act
+
+    SAMPLE = 0
+    MEAN = 1
+    """
 
     SAMPLE = 0
     MEAN = 1
 
 
 class EpochFlag(enum.IntFlag):
-    """of rdm_epoch.flags"""
+    """of rdm_epoch.flags
 
-    NO_EPISODE = 1  # no episode has ended so far: ret, cost, length and rates are NaN
-    SKIPPED_GRADIENTS = 2  # gradients that were not finite were left out
-    INVALID_ROWS = 4  # rows with valid 0
-    CUT = 8  # episodes were counted as ended at max_steps or episode_steps
-    DIVERGED = 16  # decisions flagged RDM_STATUS_DIVERGED
-    CONTACTS = 32  # decisions flagged RDM_STATUS_CONTACTS
-    BAD_ACTION = 64  # decisions flagged RDM_STATUS_BAD_ACTION
-    TASK = 128  # decisions flagged RDM_STATUS_TASK
-    SOLVER = 256  # decisions flagged RDM_STATUS_SOLVER
-    SLOWED = 512  # decisions flagged RDM_STATUS_SLOWED
+    NO_EPISODE = 1: no episode has ended so far: ret, cost, length and rates are NaN
+    SKIPPED_GRADIENTS = 2: gradients that were not finite were left out
+    INVALID_ROWS = 4: rows with valid 0
+    CUT = 8: episodes were counted as ended at max_steps or episode_steps
+    DIVERGED = 16: decisions flagged RDM_STATUS_DIVERGED
+    CONTACTS = 32: decisions flagged RDM_STATUS_CONTACTS
+    BAD_ACTION = 64: decisions flagged RDM_STATUS_BAD_ACTION
+    TASK = 128: decisions flagged RDM_STATUS_TASK
+    SOLVER = 256: decisions flagged RDM_STATUS_SOLVER
+    SLOWED = 512: decisions flagged RDM_STATUS_SLOWED
+    """
+
+    NO_EPISODE = 1
+    SKIPPED_GRADIENTS = 2
+    INVALID_ROWS = 4
+    CUT = 8
+    DIVERGED = 16
+    CONTACTS = 32
+    BAD_ACTION = 64
+    TASK = 128
+    SOLVER = 256
+    SLOWED = 512
 
 
 class MapFormat(enum.IntEnum):
     """OctoMap's files: RDM_MAP_BINARY (.bt: occupied or free) and RDM_MAP_FULL (.ot: the probabilities
     too).
+
+    BINARY = 0
+    FULL = 1
     """
 
     BINARY = 0
@@ -165,17 +246,29 @@ class MapFormat(enum.IntEnum):
 
 
 class ShieldKind(enum.IntEnum):
-    """what a shield did with a proposed action"""
+    """what a shield did with a proposed action
 
-    OWN = 0  # it went through
-    CHANGED = 1  # refused: another one, from which the way is clean
-    PLAN = 2  # refused: the next action of the plan that was made before
-    UNPROVEN = 3  # nothing that was tried is clean: with option unproven=least what exceeds the budgets least
-    PROJECTED = 4  # it broke guards: the nearest one that keeps them went through
+    OWN = 0: it went through
+    CHANGED = 1: refused: another one, from which the way is clean
+    PLAN = 2: refused: the next action of the plan that was made before
+    UNPROVEN = 3: nothing that was tried is clean: with option unproven=least what exceeds the budgets least
+    PROJECTED = 4: it broke guards: the nearest one that keeps them went through
+    """
+
+    OWN = 0
+    CHANGED = 1
+    PLAN = 2
+    UNPROVEN = 3
+    PROJECTED = 4
 
 
 class RobotKind(enum.IntEnum):
-    """of a robot"""
+    """of a robot
+
+    OTHER = 0
+    HAND = 1
+    ARM = 2
+    """
 
     OTHER = 0
     HAND = 1
@@ -183,86 +276,151 @@ class RobotKind(enum.IntEnum):
 
 
 class LinkRow(enum.IntEnum):
-    """in the place of a row of links"""
+    """in the place of a row of links
+
+    ROOT = -1
+    NONE = -2
+    """
 
     ROOT = -1
     NONE = -2
 
 
 class ScenePart(enum.IntEnum):
-    """what rdm_scene_find looks for; numbers count from 0 in the order of adding"""
+    """what rdm_scene_find looks for; numbers count from 0 in the order of adding
 
     ROBOT = 0
     BODY = 1
-    LINK = 2  # of all robots, robot by robot; joint i moves link i
+    LINK = 2: of all robots, robot by robot; joint i moves link i
     JOINT = 3
-    SHAPE = 4  # as rdm_pool_shape_at: robots, bodies, those that stand still
-    SENSOR = 5  # the link of a fingertip, for rdm_world_get_sensor
-    MATERIAL = 6  # "default" is 0
+    SHAPE = 4: as rdm_pool_shape_at: robots, bodies, those that stand still
+    SENSOR = 5: the link of a fingertip, for rdm_world_get_sensor
+    MATERIAL = 6: "default" is 0
+    """
+
+    ROBOT = 0
+    BODY = 1
+    LINK = 2
+    JOINT = 3
+    SHAPE = 4
+    SENSOR = 5
+    MATERIAL = 6
 
 
 class Friction(enum.IntEnum):
-    """in the place of a coefficient"""
+    """in the place of a coefficient
+
+    PASSES = -1
+    """
 
     PASSES = -1
 
 
 class Scale(enum.IntEnum):
-    """what a factor is on, and in brackets its bounds"""
+    """what a factor is on, and in brackets its bounds
 
-    GRAVITY = 0  # [-10, 10]
-    LINK_MASS = 1  # [0.001, 1000], moments with it; index: link
+    GRAVITY = 0: [-10, 10]
+    LINK_MASS = 1: [0.001, 1000], moments with it; index: link
     LINK_KP = 2
     LINK_KD = 3
     LINK_EFFORT = 4
     LINK_FRICTION = 5
-    BASE_MASS = 6  # [0.001, 1000] of a free base; index: robot
-    BASE_DAMPING = 7  # [0, 1000] of all links of a robot with a free base
-    BODY_MASS = 8  # [0.001, 1000], moments with it; index: body
-    BODY_SIZE = 9  # [0.05, 20] of all its shapes, moments with the square
+    BASE_MASS = 6: [0.001, 1000] of a free base; index: robot
+    BASE_DAMPING = 7: [0, 1000] of all links of a robot with a free base
+    BODY_MASS = 8: [0.001, 1000], moments with it; index: body
+    BODY_SIZE = 9: [0.05, 20] of all its shapes, moments with the square
     BODY_LINEAR_DAMPING = 10
-    BODY_ANGULAR_DAMPING = 11  # [0, 1000]
-    FRICTION = 12  # [0, 1000] of two materials, index and other
+    BODY_ANGULAR_DAMPING = 11: [0, 1000]
+    FRICTION = 12: [0, 1000] of two materials, index and other
+    """
+
+    GRAVITY = 0
+    LINK_MASS = 1
+    LINK_KP = 2
+    LINK_KD = 3
+    LINK_EFFORT = 4
+    LINK_FRICTION = 5
+    BASE_MASS = 6
+    BASE_DAMPING = 7
+    BODY_MASS = 8
+    BODY_SIZE = 9
+    BODY_LINEAR_DAMPING = 10
+    BODY_ANGULAR_DAMPING = 11
+    FRICTION = 12
 
 
 class Quantity(enum.IntEnum):
-    """of worlds, each so many doubles"""
+    """of worlds, each so many doubles
 
-    Q = 0  # 1: coordinate of a joint, rad (m)
-    QD = 1  # 1: its velocity, rad/s (m/s)
-    TARGET = 2  # 1: what its drive goes for; can be set
-    TORQUE = 3  # 1: of its drive, mean over the step, N m (N)
-    LINK = 4  # 13: p, q, v, w as rdm_motion
-    BASE = 5  # 13: likewise, of a robot; can be set where it is free
-    BODY = 6  # 13: likewise; can be set
-    SHAPE = 7  # 7: p, q
-    SENSOR = 8  # 6: force, torque as rdm_world_get_sensor
-    TOUCH = 9  # 2: pairs and force as rdm_world_get_touch
-    JOINT = 10  # 2: coordinate and velocity; all joints of robot `first`
-    COMMAND = 11  # 1: in [-1, 1]; all commands of one robot, whose number is `first`
-    FEEDFORWARD = 12  # 1: effort of a joint, N m (N)
-    BODY_PUSH = 13  # 6: force and torque as rdm_world_push_body
-    BASE_PUSH = 14  # 6: as rdm_world_push_base
-    LINK_PUSH = 15  # 6: force and point as rdm_world_push_link
+    Q = 0: 1: coordinate of a joint, rad (m)
+    QD = 1: 1: its velocity, rad/s (m/s)
+    TARGET = 2: 1: what its drive goes for; can be set
+    TORQUE = 3: 1: of its drive, mean over the step, N m (N)
+    LINK = 4: 13: p, q, v, w as rdm_motion
+    BASE = 5: 13: likewise, of a robot; can be set where it is free
+    BODY = 6: 13: likewise; can be set
+    SHAPE = 7: 7: p, q
+    SENSOR = 8: 6: force, torque as rdm_world_get_sensor
+    TOUCH = 9: 2: pairs and force as rdm_world_get_touch
+    JOINT = 10: 2: coordinate and velocity; all joints of robot `first`
+    COMMAND = 11: 1: in [-1, 1]; all commands of one robot, whose number is `first`
+    FEEDFORWARD = 12: 1: effort of a joint, N m (N)
+    BODY_PUSH = 13: 6: force and torque as rdm_world_push_body
+    BASE_PUSH = 14: 6: as rdm_world_push_base
+    LINK_PUSH = 15: 6: force and point as rdm_world_push_link
+    """
+
+    Q = 0
+    QD = 1
+    TARGET = 2
+    TORQUE = 3
+    LINK = 4
+    BASE = 5
+    BODY = 6
+    SHAPE = 7
+    SENSOR = 8
+    TOUCH = 9
+    JOINT = 10
+    COMMAND = 11
+    FEEDFORWARD = 12
+    BODY_PUSH = 13
+    BASE_PUSH = 14
+    LINK_PUSH = 15
 
 
 class Build(Record):
-    """The values of rdm_build."""
+    """what this library was made of
 
-    abi: int  # RDM_ABI of the library
-    version: str  # "0.1.0"
-    ode: str  # version of ODE, "" without the simulation half
-    eigen: str  # version of Eigen
-    ccd: str  # version of libccd
-    octomap: str  # version of OctoMap
-    precision: str  # of physics and networks: "double physics, float nets"
-    compiler: str  # name and version
-    kernels: str  # instruction set that the networks run on here
-    differs: str  # "ODE", "libccd", "ODE, libccd": these compute other bytes here than on the machines of the recorded hashes (compiled with fused multiply-adds, as by Debian for arm64, or another version), and so do worlds with contacts; "": none, or no simulation half
+    abi: RDM_ABI of the library
+    version: "0.1.0"
+    ode: version of ODE, "" without the simulation half
+    eigen: version of Eigen
+    ccd: version of libccd
+    octomap: version of OctoMap
+    precision: of physics and networks: "double physics, float nets"
+    compiler: name and version
+    kernels: instruction set that the networks run on here
+    differs: "ODE", "libccd", "ODE, libccd": these compute other bytes here than on the machines of the recorded
+        hashes (compiled with fused multiply-adds, as by Debian for arm64, or another version), and so do worlds
+        with contacts; "": none, or no simulation half
+    """
+
+    abi: int
+    version: str
+    ode: str
+    eigen: str
+    ccd: str
+    octomap: str
+    precision: str
+    compiler: str
+    kernels: str
+    differs: str
 
 
 class rdm_build(Structure):
-    """struct_size: in: bytes
+    """what this library was made of
+
+    struct_size: in: bytes
     abi: RDM_ABI of the library
     version: "0.1.0"
     ode: version of ODE, "" without the simulation half
@@ -310,7 +468,9 @@ rdm_stop = CFUNCTYPE(c_int32, c_void_p, c_int64)
 
 
 class rdm_host(Structure):
-    """struct_size: bytes
+    """what a host gives in the place of the C library and of our threads
+
+    struct_size: bytes
     reserved: 0
     user: passed back to every hook; may be NULL
     alloc: `bytes` at a multiple of `align` (a power of two up to 64), or NULL. NULL hook: the C library's.
@@ -341,15 +501,22 @@ class rdm_host(Structure):
 
 
 class Option(Record):
-    """The values of rdm_option."""
+    """frozen layout: one key and its value
 
-    key: str  # case is ignored and '-' equals '_'
-    text: str | None  # value as one line of text ("0.5", "0.7..1.3", "egg"); NULL: number is it
-    number: float  # value when text is NULL
+    key: case is ignored and '-' equals '_'
+    text: value as one line of text ("0.5", "0.7..1.3", "egg"); NULL: number is it
+    number: value when text is NULL
+    """
+
+    key: str
+    text: str | None
+    number: float
 
 
 class rdm_option(Structure):
-    """key: case is ignored and '-' equals '_'
+    """frozen layout: one key and its value
+
+    key: case is ignored and '-' equals '_'
     text: value as one line of text ("0.5", "0.7..1.3", "egg"); NULL: number is it
     number: value when text is NULL
     """
@@ -365,22 +532,37 @@ class rdm_option(Structure):
 
 
 class OptionSpec(Record):
-    """The values of rdm_option_spec."""
+    """one row of an option table
 
-    kind: int  # RDM_KIND_NUMBER, RDM_KIND_INTEGER, RDM_KIND_FLAG, RDM_KIND_TEXT
-    live: int  # flag: rdm_agent_set_option may change it after creation
-    level: int  # RDM_LEVEL_BASIC, RDM_LEVEL_ADVANCED, RDM_LEVEL_LEGACY
-    key: str  # static; its last word FIELD: any name of a field, or a pattern with '*'
-    help: str  # one line, with the unit
-    text: str | None  # default of a text option, or of a number that is a range, else NULL
-    choices: str | None  # text: allowed words "a|b|c", NULL: any; number, integer: "a..b": takes a range "0.7..1.3" too, which each world draws from at a reset; else NULL
-    number: float  # default of number, integer, flag; of a range its middle
-    low: float  # inclusive bounds
-    high: float  # inclusive bounds
+    kind: RDM_KIND_NUMBER, RDM_KIND_INTEGER, RDM_KIND_FLAG, RDM_KIND_TEXT
+    live: flag: rdm_agent_set_option may change it after creation
+    level: RDM_LEVEL_BASIC, RDM_LEVEL_ADVANCED, RDM_LEVEL_LEGACY
+    key: static; its last word FIELD: any name of a field, or a pattern with '*'
+    help: one line, with the unit
+    text: default of a text option, or of a number that is a range, else NULL
+    choices: text: allowed words "a|b|c", NULL: any; number, integer: "a..b": takes a range "0.7..1.3" too,
+        which each world draws from at a reset; else NULL
+    number: default of number, integer, flag; of a range its middle
+    low: inclusive bounds
+    high: inclusive bounds
+    """
+
+    kind: int
+    live: int
+    level: int
+    key: str
+    help: str
+    text: str | None
+    choices: str | None
+    number: float
+    low: float
+    high: float
 
 
 class rdm_option_spec(Structure):
-    """struct_size: in: bytes
+    """one row of an option table
+
+    struct_size: in: bytes
     kind: RDM_KIND_NUMBER, RDM_KIND_INTEGER, RDM_KIND_FLAG, RDM_KIND_TEXT
     live: flag: rdm_agent_set_option may change it after creation
     level: RDM_LEVEL_BASIC, RDM_LEVEL_ADVANCED, RDM_LEVEL_LEGACY
@@ -421,14 +603,20 @@ class rdm_option_spec(Structure):
 
 
 class Pose(Record):
-    """The values of rdm_pose."""
+    """frozen layout: 7 doubles, where a frame is in another
 
-    p: tuple[float, ...]  # its origin, m
-    q: tuple[float, ...]  # its rotation (x, y, z, w), unit; given, all 0: none
+    p: its origin, m
+    q: its rotation (x, y, z, w), unit; given, all 0: none
+    """
+
+    p: tuple[float, ...]
+    q: tuple[float, ...]
 
 
 class rdm_pose(Structure):
-    """p: its origin, m
+    """frozen layout: 7 doubles, where a frame is in another
+
+    p: its origin, m
     q: its rotation (x, y, z, w), unit; given, all 0: none
     """
 
@@ -441,16 +629,24 @@ class rdm_pose(Structure):
 
 
 class Field(Record):
-    """The values of rdm_field."""
+    """frozen layout: a run of observation entries
 
-    name: str  # "right.joint_position"
-    unit: str  # "rad", "m/s", "1" after scaling ...
-    offset: int  # first entry
-    count: int  # entries
+    name: "right.joint_position"
+    unit: "rad", "m/s", "1" after scaling ...
+    offset: first entry
+    count: entries
+    """
+
+    name: str
+    unit: str
+    offset: int
+    count: int
 
 
 class rdm_field(Structure):
-    """name: "right.joint_position"
+    """frozen layout: a run of observation entries
+
+    name: "right.joint_position"
     unit: "rad", "m/s", "1" after scaling ...
     offset: first entry
     count: entries
@@ -469,18 +665,28 @@ class rdm_field(Structure):
 
 
 class FieldInfo(Record):
-    """The values of rdm_field_info."""
+    """what a run of observation entries is
 
-    offset: int  # first entry
-    count: int  # entries
-    name: str  # "right.joint_position"
-    unit: str  # "rad", "m/s", "1" after scaling ...
-    low: float  # bounds that every entry keeps; NaN: none
-    high: float  # bounds that every entry keeps; NaN: none
+    offset: first entry
+    count: entries
+    name: "right.joint_position"
+    unit: "rad", "m/s", "1" after scaling ...
+    low: bounds that every entry keeps; NaN: none
+    high: bounds that every entry keeps; NaN: none
+    """
+
+    offset: int
+    count: int
+    name: str
+    unit: str
+    low: float
+    high: float
 
 
 class rdm_field_info(Structure):
-    """struct_size: in: bytes
+    """what a run of observation entries is
+
+    struct_size: in: bytes
     offset: first entry
     count: entries
     reserved: 0
@@ -511,15 +717,22 @@ class rdm_field_info(Structure):
 
 
 class Tensor(Record):
-    """The values of rdm_tensor."""
+    """frozen layout: a named block of parameters
 
-    name: str  # "actor.0.weight", "actor.log_std", "reward_critic.1.bias"
-    rows: int  # row-major; cols 1 for vectors
-    cols: int  # row-major; cols 1 for vectors
+    name: "actor.0.weight", "actor.log_std", "reward_critic.1.bias"
+    rows: row-major; cols 1 for vectors
+    cols: row-major; cols 1 for vectors
+    """
+
+    name: str
+    rows: int
+    cols: int
 
 
 class rdm_tensor(Structure):
-    """name: "actor.0.weight", "actor.log_std", "reward_critic.1.bias"
+    """frozen layout: a named block of parameters
+
+    name: "actor.0.weight", "actor.log_std", "reward_critic.1.bias"
     rows: row-major; cols 1 for vectors
     cols: row-major; cols 1 for vectors
     """
@@ -535,23 +748,38 @@ class rdm_tensor(Structure):
 
 
 class Spec(Record):
-    """The values of rdm_spec."""
+    """sizes of a pool's rows; what a policy is checked against
 
-    control_dt: float  # s between steps
-    obs_dim: int  # count
-    action_dim: int  # count
-    cost_dim: int  # count
-    max_steps: int  # control steps of an episode
-    layout_hash: int  # of field names, counts and action order: policies carry it
-    num_fields: int  # for rdm_pool_field_at
-    num_shapes: int  # for rdm_pool_shape_at
-    num_joints: int  # of all robots
-    task: int  # index for rdm_task_at and its like
-    action_repeat: int  # control steps in one rdm_pool_step: option action_repeat
+    control_dt: s between steps
+    obs_dim: count
+    action_dim: count
+    cost_dim: count
+    max_steps: control steps of an episode
+    layout_hash: of field names, counts and action order: policies carry it
+    num_fields: for rdm_pool_field_at
+    num_shapes: for rdm_pool_shape_at
+    num_joints: of all robots
+    task: index for rdm_task_at and its like
+    action_repeat: control steps in one rdm_pool_step: option action_repeat
+    """
+
+    control_dt: float
+    obs_dim: int
+    action_dim: int
+    cost_dim: int
+    max_steps: int
+    layout_hash: int
+    num_fields: int
+    num_shapes: int
+    num_joints: int
+    task: int
+    action_repeat: int
 
 
 class rdm_spec(Structure):
-    """struct_size: in: bytes
+    """sizes of a pool's rows; what a policy is checked against
+
+    struct_size: in: bytes
     control_dt: s between steps
     obs_dim: count
     action_dim: count
@@ -597,28 +825,49 @@ class rdm_spec(Structure):
 
 
 class PolicyInfo(Record):
-    """The values of rdm_policy_info."""
+    """what a policy file tells of its network
 
-    obs_dim: int  # count
-    action_dim: int  # count
-    action_repeat: int  # control steps to hold each action
-    control_dt: float  # s, 0: unknown
-    noise_correlation: float  # AR(1) coefficient of the noise it was trained with
-    layout_hash: int  # 0: unknown
-    num_params: int  # of the network
-    task: str  # "" for a host's own environment
-    activation: str  # of the hidden layers: "tanh", "elu", "relu"; static
-    num_points: int  # of the cloud beside each row, for rdm_policy_act_points; 0: it reads none
-    num_point_classes: int  # that it tells points apart by, 0: none
-    num_features: int  # that its encoder makes of a cloud, 0 without
-    point_color: int  # whether it reads the colours of points: 0, 1
-    num_fields: int  # for rdm_policy_field_at; 0: the file says none
-    novelty: int  # whether rdm_policy_novelty tells: 0, 1
-    generation: int  # which network: the low 32 bits are the epochs that its agent had learned, the high ones a checksum of it; what was sampled by another one is stale. 0: unknown
+    obs_dim: count
+    action_dim: count
+    action_repeat: control steps to hold each action
+    control_dt: s, 0: unknown
+    noise_correlation: AR(1) coefficient of the noise it was trained with
+    layout_hash: 0: unknown
+    num_params: of the network
+    task: "" for a host's own environment
+    activation: of the hidden layers: "tanh", "elu", "relu"; static
+    num_points: of the cloud beside each row, for rdm_policy_act_points; 0: it reads none
+    num_point_classes: that it tells points apart by, 0: none
+    num_features: that its encoder makes of a cloud, 0 without
+    point_color: whether it reads the colours of points: 0, 1
+    num_fields: for rdm_policy_field_at; 0: the file says none
+    novelty: whether rdm_policy_novelty tells: 0, 1
+    generation: which network: the low 32 bits are the epochs that its agent had learned, the high ones a
+        checksum of it; what was sampled by another one is stale. 0: unknown
+    """
+
+    obs_dim: int
+    action_dim: int
+    action_repeat: int
+    control_dt: float
+    noise_correlation: float
+    layout_hash: int
+    num_params: int
+    task: str
+    activation: str
+    num_points: int
+    num_point_classes: int
+    num_features: int
+    point_color: int
+    num_fields: int
+    novelty: int
+    generation: int
 
 
 class rdm_policy_info(Structure):
-    """struct_size: in: bytes
+    """what a policy file tells of its network
+
+    struct_size: in: bytes
     obs_dim: count
     action_dim: count
     action_repeat: control steps to hold each action
@@ -677,24 +926,41 @@ class rdm_policy_info(Structure):
 
 
 class Task(Record):
-    """The values of rdm_task."""
+    """a task with its default options
 
-    control_dt: float  # s between steps, default options
-    name: str  # "hand_over_safe_finger"
-    summary: str  # one line
-    obs_dim: int  # count, default options
-    action_dim: int  # count, default options
-    cost_dim: int  # count of cost columns
-    max_steps: int  # control steps of an episode, default options
-    num_fields: int  # for rdm_task_field_at
-    num_options: int  # for rdm_task_option_at
-    num_cameras: int  # for rdm_task_camera_at
-    num_defaults: int  # for rdm_task_default_at
-    action_order: str  # what the entries of the action are: "thrust, turn"; of hands groups, "right joints, force, torque"; default options
+    control_dt: s between steps, default options
+    name: "hand_over_safe_finger"
+    summary: one line
+    obs_dim: count, default options
+    action_dim: count, default options
+    cost_dim: count of cost columns
+    max_steps: control steps of an episode, default options
+    num_fields: for rdm_task_field_at
+    num_options: for rdm_task_option_at
+    num_cameras: for rdm_task_camera_at
+    num_defaults: for rdm_task_default_at
+    action_order: what the entries of the action are: "thrust, turn"; of hands groups, "right joints, force,
+        torque"; default options
+    """
+
+    control_dt: float
+    name: str
+    summary: str
+    obs_dim: int
+    action_dim: int
+    cost_dim: int
+    max_steps: int
+    num_fields: int
+    num_options: int
+    num_cameras: int
+    num_defaults: int
+    action_order: str
 
 
 class rdm_task(Structure):
-    """struct_size: in: bytes
+    """a task with its default options
+
+    struct_size: in: bytes
     control_dt: s between steps, default options
     name: "hand_over_safe_finger"
     summary: one line
@@ -741,15 +1007,22 @@ class rdm_task(Structure):
 
 
 class CostInfo(Record):
-    """The values of rdm_cost_info."""
+    """a cost column
 
-    name: str  # column 0 is "cost", the paper's
-    help: str  # one line
-    limit: float  # default limit on the sum over an episode; < 0: none
+    name: column 0 is "cost", the paper's
+    help: one line
+    limit: default limit on the sum over an episode; < 0: none
+    """
+
+    name: str
+    help: str
+    limit: float
 
 
 class rdm_cost_info(Structure):
-    """struct_size: in: bytes
+    """a cost column
+
+    struct_size: in: bytes
     reserved: 0
     name: column 0 is "cost", the paper's
     help: one line
@@ -771,20 +1044,33 @@ class rdm_cost_info(Structure):
 
 
 class CameraInfo(Record):
-    """The values of rdm_camera_info."""
+    """a pinhole camera
 
-    mount: int  # 0: the world's frame; k > 0: of link k - 1 of the scene; -k: of the base of its articulation k - 1 (cameras that ride on a robot)
-    name: str  # "front"
-    eye: tuple[float, ...]  # m, in the frame that mount names
-    target: tuple[float, ...]  # m, likewise; the optical axis runs from eye to target
-    up: tuple[float, ...]  # likewise: what points up in the picture; where it lies along the axis, -x of the world does
-    fov_y: float  # rad: in pixels, the focal length is half a picture's height / tan(fov_y / 2)
-    cx: float  # where the optical axis meets the picture: to the right of its centre, as a share of its width
-    cy: float  # likewise: below its centre, as a share of its height
+    mount: 0: the world's frame; k > 0: of link k - 1 of the scene; -k: of the base of its articulation k - 1
+        (cameras that ride on a robot)
+    name: "front"
+    eye: m, in the frame that mount names
+    target: m, likewise; the optical axis runs from eye to target
+    up: likewise: what points up in the picture; where it lies along the axis, -x of the world does
+    fov_y: rad: in pixels, the focal length is half a picture's height / tan(fov_y / 2)
+    cx: where the optical axis meets the picture: to the right of its centre, as a share of its width
+    cy: likewise: below its centre, as a share of its height
+    """
+
+    mount: int
+    name: str
+    eye: tuple[float, ...]
+    target: tuple[float, ...]
+    up: tuple[float, ...]
+    fov_y: float
+    cx: float
+    cy: float
 
 
 class rdm_camera_info(Structure):
-    """struct_size: in: bytes
+    """a pinhole camera
+
+    struct_size: in: bytes
     mount: 0: the world's frame; k > 0: of link k - 1 of the scene; -k: of the base of its articulation k - 1
         (cameras that ride on a robot)
     name: "front"
@@ -819,16 +1105,24 @@ class rdm_camera_info(Structure):
 
 
 class Robot(Record):
-    """The values of rdm_robot."""
+    """a robot description
 
-    num_joints: int  # count
-    num_actuated: int  # count of joints with a motor of their own
-    name: str  # "shadow_hand"
-    summary: str  # one line
+    num_joints: count
+    num_actuated: count of joints with a motor of their own
+    name: "shadow_hand"
+    summary: one line
+    """
+
+    num_joints: int
+    num_actuated: int
+    name: str
+    summary: str
 
 
 class rdm_robot(Structure):
-    """struct_size: in: bytes
+    """a robot description
+
+    struct_size: in: bytes
     num_joints: count
     num_actuated: count of joints with a motor of their own
     reserved: 0
@@ -853,22 +1147,37 @@ class rdm_robot(Structure):
 
 
 class JointInfo(Record):
-    """The values of rdm_joint_info."""
+    """a joint of a robot, a scene or a pool's worlds
 
-    kind: int  # RDM_JOINT_*: revolute joints in rad and N m, prismatic in m and N
-    parent: int  # the joint before it on the way from the base, -1: none
-    action: int  # entry of the action (of a robot, in a scene too: its command) that is its own; -1: none, or only the functions of a host's task know
-    name: str  # "FFJ2"; of a pool "right_FFJ2"
-    lower: float  # range, rad (m)
-    upper: float  # range, rad (m)
-    velocity: float  # how fast its drive's target may move, rad/s (m/s); NaN: not known
-    kp: float  # of its drive, N m/rad (N/m); 0: coupled, or no spring
-    kd: float  # of its drive, N m s/rad (N s/m)
-    effort: float  # bound of its drive's torque, N m (N)
+    kind: RDM_JOINT_*: revolute joints in rad and N m, prismatic in m and N
+    parent: the joint before it on the way from the base, -1: none
+    action: entry of the action (of a robot, in a scene too: its command) that is its own; -1: none, or only the
+        functions of a host's task know
+    name: "FFJ2"; of a pool "right_FFJ2"
+    lower: range, rad (m)
+    upper: range, rad (m)
+    velocity: how fast its drive's target may move, rad/s (m/s); NaN: not known
+    kp: of its drive, N m/rad (N/m); 0: coupled, or no spring
+    kd: of its drive, N m s/rad (N s/m)
+    effort: bound of its drive's torque, N m (N)
+    """
+
+    kind: int
+    parent: int
+    action: int
+    name: str
+    lower: float
+    upper: float
+    velocity: float
+    kp: float
+    kd: float
+    effort: float
 
 
 class rdm_joint_info(Structure):
-    """struct_size: in: bytes
+    """a joint of a robot, a scene or a pool's worlds
+
+    struct_size: in: bytes
     kind: RDM_JOINT_*: revolute joints in rad and N m, prismatic in m and N
     parent: the joint before it on the way from the base, -1: none
     action: entry of the action (of a robot, in a scene too: its command) that is its own; -1: none, or only the
@@ -909,23 +1218,39 @@ class rdm_joint_info(Structure):
 
 
 class ObjectInfo(Record):
-    """The values of rdm_object_info."""
+    """an object by name, for option object=...
 
-    kind: int  # RDM_SHAPE_* of its only shape; -1: it has several
-    num_shapes: int  # count
-    own: int  # flag: a host's own, by rdm_object_create
-    name: str  # "egg"
-    alias: str | None  # another name, "025_mug"; NULL: none
-    summary: str  # one line, may be ""
-    shape: str  # "capsule r 0.03, straight part 0.02": kind and sizes in m
-    mass: float  # kg; hull: of the default points, 500 kg/m3
-    friction: float  # friction coefficient, on dry surfaces
-    low: tuple[float, ...]  # m, lowest corner of the box around what can be touched of it, from its centre of mass, along the axes of its description
-    high: tuple[float, ...]  # m, highest corner of it
+    kind: RDM_SHAPE_* of its only shape; -1: it has several
+    num_shapes: count
+    own: flag: a host's own, by rdm_object_create
+    name: "egg"
+    alias: another name, "025_mug"; NULL: none
+    summary: one line, may be ""
+    shape: "capsule r 0.03, straight part 0.02": kind and sizes in m
+    mass: kg; hull: of the default points, 500 kg/m3
+    friction: friction coefficient, on dry surfaces
+    low: m, lowest corner of the box around what can be touched of it, from its centre of mass, along the axes
+        of its description
+    high: m, highest corner of it
+    """
+
+    kind: int
+    num_shapes: int
+    own: int
+    name: str
+    alias: str | None
+    summary: str
+    shape: str
+    mass: float
+    friction: float
+    low: tuple[float, ...]
+    high: tuple[float, ...]
 
 
 class rdm_object_info(Structure):
-    """struct_size: in: bytes
+    """an object by name, for option object=...
+
+    struct_size: in: bytes
     kind: RDM_SHAPE_* of its only shape; -1: it has several
     num_shapes: count
     own: flag: a host's own, by rdm_object_create
@@ -969,7 +1294,9 @@ class rdm_object_info(Structure):
 
 
 class rdm_pool_config(Structure):
-    """struct_size: bytes, set by rdm_pool_config_init
+    """what a pool is made from
+
+    struct_size: bytes, set by rdm_pool_config_init
     num_envs: worlds, 1..65536, default 1
     task: name, required; copied
     seed: world i draws from stream (seed, i), until a reset names another
@@ -1079,17 +1406,26 @@ class rdm_buffers(Structure):
 
 
 class ShapeInfo(Record):
-    """The values of rdm_shape_info."""
+    """a part of what the scene is made of, the same for all worlds
 
-    kind: int  # RDM_SHAPE_SPHERE ... RDM_SHAPE_HULL; plane: the half space below z = 0 of its frame
-    fixed: int  # flag: never moves
-    color: tuple[int, ...]  # red, green, blue, 255
-    name: str  # "right.ff_distal"
-    size: tuple[float, ...]  # m: radius | radius, half length along z | half sizes (hull: of its box)
+    kind: RDM_SHAPE_SPHERE ... RDM_SHAPE_HULL; plane: the half space below z = 0 of its frame
+    fixed: flag: never moves
+    color: red, green, blue, 255
+    name: "right.ff_distal"
+    size: m: radius | radius, half length along z | half sizes (hull: of its box)
+    """
+
+    kind: int
+    fixed: int
+    color: tuple[int, ...]
+    name: str
+    size: tuple[float, ...]
 
 
 class rdm_shape_info(Structure):
-    """struct_size: in: bytes
+    """a part of what the scene is made of, the same for all worlds
+
+    struct_size: in: bytes
     kind: RDM_SHAPE_SPHERE ... RDM_SHAPE_HULL; plane: the half space below z = 0 of its frame
     fixed: flag: never moves
     color: red, green, blue, 255
@@ -1114,18 +1450,28 @@ class rdm_shape_info(Structure):
 
 
 class Contact(Record):
-    """The values of rdm_contact."""
+    """frozen layout: one contact point of the last substep
 
-    shape_a: int  # for rdm_pool_shape_at
-    shape_b: int  # for rdm_pool_shape_at
-    position: tuple[float, ...]  # m
-    normal: tuple[float, ...]  # unit, from b into a
-    force: tuple[float, ...]  # N, on a
-    depth: float  # m
+    shape_a: for rdm_pool_shape_at
+    shape_b: for rdm_pool_shape_at
+    position: m
+    normal: unit, from b into a
+    force: N, on a
+    depth: m
+    """
+
+    shape_a: int
+    shape_b: int
+    position: tuple[float, ...]
+    normal: tuple[float, ...]
+    force: tuple[float, ...]
+    depth: float
 
 
 class rdm_contact(Structure):
-    """shape_a: for rdm_pool_shape_at
+    """frozen layout: one contact point of the last substep
+
+    shape_a: for rdm_pool_shape_at
     shape_b: for rdm_pool_shape_at
     position: m
     normal: unit, from b into a
@@ -1150,24 +1496,41 @@ class rdm_contact(Structure):
 
 
 class PoolStats(Record):
-    """The values of rdm_pool_stats."""
+    """counts since create
 
-    contacts_max: int  # largest number of contacts in a substep's list since create, all worlds
-    contacts_mean: float  # mean of the same
-    joint_drift: float  # m, largest gap of any joint now, all worlds
-    steps: int  # control steps of one world, summed over worlds
-    diverged: int  # steps and resets flagged RDM_STATUS_DIVERGED so far
-    overflowed: int  # steps flagged RDM_STATUS_CONTACTS so far
-    bad_actions: int  # steps flagged RDM_STATUS_BAD_ACTION so far
-    task_failed: int  # steps flagged RDM_STATUS_TASK so far
-    unconverged: int  # steps flagged RDM_STATUS_SOLVER so far
-    slowed: int  # steps flagged RDM_STATUS_SLOWED so far
-    solver_residual: float  # m/s, what a contact's normal velocity was still wrong by when the last sweep of the last step came to it, the largest of all worlds; NaN: engine ode, not measured
-    violations: int  # control steps so far in which column 0, or a cost with a limit by the task, was above 0
+    contacts_max: largest number of contacts in a substep's list since create, all worlds
+    contacts_mean: mean of the same
+    joint_drift: m, largest gap of any joint now, all worlds
+    steps: control steps of one world, summed over worlds
+    diverged: steps and resets flagged RDM_STATUS_DIVERGED so far
+    overflowed: steps flagged RDM_STATUS_CONTACTS so far
+    bad_actions: steps flagged RDM_STATUS_BAD_ACTION so far
+    task_failed: steps flagged RDM_STATUS_TASK so far
+    unconverged: steps flagged RDM_STATUS_SOLVER so far
+    slowed: steps flagged RDM_STATUS_SLOWED so far
+    solver_residual: m/s, what a contact's normal velocity was still wrong by when the last sweep of the last
+        step came to it, the largest of all worlds; NaN: engine ode, not measured
+    violations: control steps so far in which column 0, or a cost with a limit by the task, was above 0
+    """
+
+    contacts_max: int
+    contacts_mean: float
+    joint_drift: float
+    steps: int
+    diverged: int
+    overflowed: int
+    bad_actions: int
+    task_failed: int
+    unconverged: int
+    slowed: int
+    solver_residual: float
+    violations: int
 
 
 class rdm_pool_stats(Structure):
-    """struct_size: in: bytes
+    """counts since create
+
+    struct_size: in: bytes
     contacts_max: largest number of contacts in a substep's list since create, all worlds
     contacts_mean: mean of the same
     joint_drift: m, largest gap of any joint now, all worlds
@@ -1214,16 +1577,24 @@ class rdm_pool_stats(Structure):
 
 
 class RayHit(Record):
-    """The values of rdm_ray_hit."""
+    """what a ray meets first
 
-    shape: int  # for rdm_pool_shape_at; -1: nothing, all else is NaN
-    distance: float  # m, from the origin
-    point: tuple[float, ...]  # m, where the ray enters it
-    normal: tuple[float, ...]  # unit, out of the shape there
+    shape: for rdm_pool_shape_at; -1: nothing, all else is NaN
+    distance: m, from the origin
+    point: m, where the ray enters it
+    normal: unit, out of the shape there
+    """
+
+    shape: int
+    distance: float
+    point: tuple[float, ...]
+    normal: tuple[float, ...]
 
 
 class rdm_ray_hit(Structure):
-    """struct_size: in: bytes
+    """what a ray meets first
+
+    struct_size: in: bytes
     shape: for rdm_pool_shape_at; -1: nothing, all else is NaN
     distance: m, from the origin
     point: m, where the ray enters it
@@ -1245,15 +1616,22 @@ class rdm_ray_hit(Structure):
 
 
 class Algo(Record):
-    """The values of rdm_algo."""
+    """an algorithm
 
-    num_options: int  # for rdm_algo_option_at
-    name: str  # "ppo_lag"
-    summary: str  # one line with the paper
+    num_options: for rdm_algo_option_at
+    name: "ppo_lag"
+    summary: one line with the paper
+    """
+
+    num_options: int
+    name: str
+    summary: str
 
 
 class rdm_algo(Structure):
-    """struct_size: in: bytes
+    """an algorithm
+
+    struct_size: in: bytes
     num_options: for rdm_algo_option_at
     name: "ppo_lag"
     summary: one line with the paper
@@ -1272,7 +1650,9 @@ class rdm_algo(Structure):
 
 
 class rdm_agent_config(Structure):
-    """struct_size: bytes, set by rdm_agent_config_init
+    """what an agent is made from
+
+    struct_size: bytes, set by rdm_agent_config_init
     obs_dim: count, 1..16384, required
     action_dim: count, 1..1024, required
     cost_dim: cost columns recorded, 0..RDM_MAX_COSTS, default 1
@@ -1358,7 +1738,9 @@ class rdm_agent_config(Structure):
 
 
 class rdm_transition(Structure):
-    """struct_size: bytes
+    """what followed the last sampled actions; a row per environment
+
+    struct_size: bytes
     reserved: 0
     reward: [num_envs] summed over the decision, required
     cost: [num_envs][cost_dim] likewise; NULL only if cost_dim is 0
@@ -1403,43 +1785,83 @@ class rdm_transition(Structure):
 class Epoch(Record):
     """One row of the learning curve; means over the last 100 finished episodes. NaN: nothing was
     measured.
+
+    epoch: count from 1
+    env_steps: control steps so far, all environments
+    episodes: finished so far
+    ret: sum of rewards of an episode
+    cost: sum of each cost column of an episode, of what cost_signal says
+    cost_per_step: column 0, per control step; of this epoch's decisions while no episode has ended, and with
+        option cost_limit_per_step
+    length: control steps of an episode
+    fall_rate: share of episodes that terminated
+    success_rate: share of episodes with at least one success
+    multiplier: of each cost, 0 where the algorithm has none
+    kl: KL(old || new), summed over action dimensions. First-order algorithms: the mean over the last pass, of
+        each minibatch before its step, so 0 after one pass in one step. Trust regions: of the step that was
+        taken.
+    entropy: of the policy
+    learning_rate: of the actor, used in this epoch
+    action_std: mean over dimensions
+    loss_policy: mean over minibatches
+    loss_reward_value: mean squared error
+    loss_cost_value: mean squared error
+    clip_fraction: share of samples whose ratio was clipped
+    value_reward: mean prediction over the batch
+    value_cost: mean prediction over the batch
+    passes: over the data, fewer after an early stop
+    cost_signal: costs are sums of 0: costs, 1: their magnitudes (option cost_signal=raw)
+    flags: RDM_EPOCH_*
+    skipped_gradients: in this epoch, as all counts below: steps left out
+    invalid_rows: decisions with valid 0 that did not only reset
+    diverged: decisions flagged RDM_STATUS_DIVERGED
+    contacts_left_out: decisions flagged RDM_STATUS_CONTACTS
+    bad_actions: decisions flagged RDM_STATUS_BAD_ACTION
+    task_failed: decisions flagged RDM_STATUS_TASK
+    unconverged: decisions flagged RDM_STATUS_SOLVER
+    slowed: decisions flagged RDM_STATUS_SLOWED
+    violations: control steps in which column 0, or a cost with a limit by the task, was above 0; -1: not an
+        epoch of rdm_agent_rollout
+    refused: decisions that a shield changed; -1: there was none
+    unproven: of these, where nothing was known to be clean; -1: likewise
+    copied: control steps of the shield's copies; -1: likewise
     """
 
-    epoch: int  # count from 1
-    env_steps: int  # control steps so far, all environments
-    episodes: int  # finished so far
-    ret: float  # sum of rewards of an episode
-    cost: tuple[float, ...]  # sum of each cost column of an episode, of what cost_signal says
-    cost_per_step: float  # column 0, per control step; of this epoch's decisions while no episode has ended, and with option cost_limit_per_step
-    length: float  # control steps of an episode
-    fall_rate: float  # share of episodes that terminated
-    success_rate: float  # share of episodes with at least one success
-    multiplier: tuple[float, ...]  # of each cost, 0 where the algorithm has none
-    kl: float  # KL(old || new), summed over action dimensions. First-order algorithms: the mean over the last pass, of each minibatch before its step, so 0 after one pass in one step. Trust regions: of the step that was taken.
-    entropy: float  # of the policy
-    learning_rate: float  # of the actor, used in this epoch
-    action_std: float  # mean over dimensions
-    loss_policy: float  # mean over minibatches
-    loss_reward_value: float  # mean squared error
-    loss_cost_value: float  # mean squared error
-    clip_fraction: float  # share of samples whose ratio was clipped
-    value_reward: float  # mean prediction over the batch
-    value_cost: float  # mean prediction over the batch
-    passes: int  # over the data, fewer after an early stop
-    cost_signal: int  # costs are sums of 0: costs, 1: their magnitudes (option cost_signal=raw)
-    flags: int  # RDM_EPOCH_*
-    skipped_gradients: int  # in this epoch, as all counts below: steps left out
-    invalid_rows: int  # decisions with valid 0 that did not only reset
-    diverged: int  # decisions flagged RDM_STATUS_DIVERGED
-    contacts_left_out: int  # decisions flagged RDM_STATUS_CONTACTS
-    bad_actions: int  # decisions flagged RDM_STATUS_BAD_ACTION
-    task_failed: int  # decisions flagged RDM_STATUS_TASK
-    unconverged: int  # decisions flagged RDM_STATUS_SOLVER
-    slowed: int  # decisions flagged RDM_STATUS_SLOWED
-    violations: int  # control steps in which column 0, or a cost with a limit by the task, was above 0; -1: not an epoch of rdm_agent_rollout
-    refused: int  # decisions that a shield changed; -1: there was none
-    unproven: int  # of these, where nothing was known to be clean; -1: likewise
-    copied: int  # control steps of the shield's copies; -1: likewise
+    epoch: int
+    env_steps: int
+    episodes: int
+    ret: float
+    cost: tuple[float, ...]
+    cost_per_step: float
+    length: float
+    fall_rate: float
+    success_rate: float
+    multiplier: tuple[float, ...]
+    kl: float
+    entropy: float
+    learning_rate: float
+    action_std: float
+    loss_policy: float
+    loss_reward_value: float
+    loss_cost_value: float
+    clip_fraction: float
+    value_reward: float
+    value_cost: float
+    passes: int
+    cost_signal: int
+    flags: int
+    skipped_gradients: int
+    invalid_rows: int
+    diverged: int
+    contacts_left_out: int
+    bad_actions: int
+    task_failed: int
+    unconverged: int
+    slowed: int
+    violations: int
+    refused: int
+    unproven: int
+    copied: int
 
 
 class rdm_epoch(Structure):
@@ -1644,19 +2066,7 @@ class rdm_sensors(Structure):
 
 
 class rdm_points(Structure):
-    """With the agent option `encoder` ("64,128") a PointNet makes features of a cloud for the actor,
-    beside the entries of the row that it reads (actor_obs, "vision": nothing of an object); critics
-    see rows alone. Of rdm_sensors:
-
-      rdm_points seen = {.struct_size = sizeof seen, .num_points = s.num_points, .points = s.points};
-      rdm_agent_act_points(agent, b.obs, &seen, RDM_ACT_SAMPLE, b.action);
-      rdm_pool_step(pool);
-      rdm_agent_record(agent, &t);
-
-    or rdm_agent_rollout with a pool whose modality has points. Points count as whole millimetres
-    from `encoder_origin`, within +-32.767 m; their order and what comes twice change nothing.
-    Several clouds (of two cameras, of a goal) are one whose points have classes that tell them
-    apart.
+    """a cloud for each row of obs, in the call that takes it
 
     struct_size: bytes
     num_points: of each cloud: the agent's option encoder_points, the policy's num_points
@@ -1680,18 +2090,28 @@ class rdm_points(Structure):
 
 
 class PretrainConfig(Record):
-    """The values of rdm_pretrain_config."""
+    """how rdm_agent_pretrain learns
 
-    num_labels: int  # kinds of points to tell apart, 2..64, required
-    epochs: int  # passes over the clouds, 1..100000, default 20
-    batch_rows: int  # clouds of a minibatch, 1..4096, default 16
-    learning_rate: float  # Adam's, 0..10, default 1e-3, falling in a line to a tenth
-    validation: float  # share of the clouds that are not learned from, 0..0.9, default 0.1
-    seed: int  # of the head's weights, of shuffling and of the choice, default 0
+    num_labels: kinds of points to tell apart, 2..64, required
+    epochs: passes over the clouds, 1..100000, default 20
+    batch_rows: clouds of a minibatch, 1..4096, default 16
+    learning_rate: Adam's, 0..10, default 1e-3, falling in a line to a tenth
+    validation: share of the clouds that are not learned from, 0..0.9, default 0.1
+    seed: of the head's weights, of shuffling and of the choice, default 0
+    """
+
+    num_labels: int
+    epochs: int
+    batch_rows: int
+    learning_rate: float
+    validation: float
+    seed: int
 
 
 class rdm_pretrain_config(Structure):
-    """struct_size: bytes, set by rdm_pretrain_config_init
+    """how rdm_agent_pretrain learns
+
+    struct_size: bytes, set by rdm_pretrain_config_init
     num_labels: kinds of points to tell apart, 2..64, required
     epochs: passes over the clouds, 1..100000, default 20
     batch_rows: clouds of a minibatch, 1..4096, default 16
@@ -1719,18 +2139,28 @@ class rdm_pretrain_config(Structure):
 
 
 class PretrainReport(Record):
-    """The values of rdm_pretrain_report."""
+    """what rdm_agent_pretrain did
 
-    train_rows: int  # clouds
-    validation_rows: int  # clouds
-    train_loss: float  # of the last epoch, mean cross-entropy of a point, nats
-    validation_loss: float  # likewise, of the clouds held back; 0 without
-    accuracy: float  # share of points of these that are told right; of all clouds without
-    most_common: float  # share that always saying the most common label gets right
+    train_rows: clouds
+    validation_rows: clouds
+    train_loss: of the last epoch, mean cross-entropy of a point, nats
+    validation_loss: likewise, of the clouds held back; 0 without
+    accuracy: share of points of these that are told right; of all clouds without
+    most_common: share that always saying the most common label gets right
+    """
+
+    train_rows: int
+    validation_rows: int
+    train_loss: float
+    validation_loss: float
+    accuracy: float
+    most_common: float
 
 
 class rdm_pretrain_report(Structure):
-    """struct_size: in: bytes
+    """what rdm_agent_pretrain did
+
+    struct_size: in: bytes
     train_rows: clouds
     validation_rows: clouds
     reserved: 0
@@ -1761,7 +2191,9 @@ class rdm_pretrain_report(Structure):
 
 
 class rdm_map_config(Structure):
-    """struct_size: bytes, set by rdm_map_config_init
+    """what a map is made from
+
+    struct_size: bytes, set by rdm_map_config_init
     reserved: 0
     resolution: side of a voxel, m, 0.001 to 10, default 0.02
     memory: bytes that tree and workspace may take, 2^20 to 2^36, default 2^26
@@ -1811,18 +2243,28 @@ class rdm_map_config(Structure):
 
 
 class MapInfo(Record):
-    """The values of rdm_map_info."""
+    """how full a map is
 
-    full: int  # 1: updates have been dropped since create, clear or load
-    resolution: float  # m; a load takes the file's
-    nodes: int  # of the tree
-    bytes: int  # of the tree
-    bytes_max: int  # memory less the workspace
-    dropped: int  # voxel updates that found no memory, since create, clear or load
+    full: 1: updates have been dropped since create, clear or load
+    resolution: m; a load takes the file's
+    nodes: of the tree
+    bytes: of the tree
+    bytes_max: memory less the workspace
+    dropped: voxel updates that found no memory, since create, clear or load
+    """
+
+    full: int
+    resolution: float
+    nodes: int
+    bytes: int
+    bytes_max: int
+    dropped: int
 
 
 class rdm_map_info(Structure):
-    """struct_size: in: bytes
+    """how full a map is
+
+    struct_size: in: bytes
     full: 1: updates have been dropped since create, clear or load
     resolution: m; a load takes the file's
     nodes: of the tree
@@ -1850,14 +2292,20 @@ class rdm_map_info(Structure):
 
 
 class Voxel(Record):
-    """The values of rdm_voxel."""
+    """frozen layout
 
-    centre: tuple[float, ...]  # m
-    side: float  # m; a multiple of the resolution where voxels were joined
+    centre: m
+    side: m; a multiple of the resolution where voxels were joined
+    """
+
+    centre: tuple[float, ...]
+    side: float
 
 
 class rdm_voxel(Structure):
-    """centre: m
+    """frozen layout
+
+    centre: m
     side: m; a multiple of the resolution where voxels were joined
     """
 
@@ -1870,7 +2318,9 @@ class rdm_voxel(Structure):
 
 
 class rdm_actor_config(Structure):
-    """struct_size: bytes, set by rdm_actor_config_init
+    """what an actor is made from
+
+    struct_size: bytes, set by rdm_actor_config_init
     num_envs: rows of an act, 1..65536, required
     policy: required; must outlive the actor
     spec: of the pool that it plays in, checked as rdm_policy_check does; its action_repeat must divide the
@@ -1915,7 +2365,9 @@ class rdm_actor_config(Structure):
 
 
 class rdm_planner_config(Structure):
-    """struct_size: bytes, set by rdm_planner_config_init
+    """what a planner is made from
+
+    struct_size: bytes, set by rdm_planner_config_init
     num_threads: of the rollouts; 0: as many as the pool has; default 0
     pool: rollouts have its task and options; required; not kept
     seed: of the noise; default 0
@@ -1978,17 +2430,26 @@ class rdm_planner_config(Structure):
 
 
 class PlannerSpec(Record):
-    """The values of rdm_planner_spec."""
+    """sizes of a planner
 
-    samples: int  # worlds rolled out in an iteration
-    horizon: int  # steps of the pool
-    knots: int  # of the noise, the horizon at most
-    action_dim: int  # count
-    cost_dim: int  # count
+    samples: worlds rolled out in an iteration
+    horizon: steps of the pool
+    knots: of the noise, the horizon at most
+    action_dim: count
+    cost_dim: count
+    """
+
+    samples: int
+    horizon: int
+    knots: int
+    action_dim: int
+    cost_dim: int
 
 
 class rdm_planner_spec(Structure):
-    """struct_size: in: bytes
+    """sizes of a planner
+
+    struct_size: in: bytes
     samples: worlds rolled out in an iteration
     horizon: steps of the pool
     knots: of the noise, the horizon at most
@@ -2013,20 +2474,32 @@ class rdm_planner_spec(Structure):
 
 
 class PlanInfo(Record):
-    """The values of rdm_plan_info."""
+    """what a call of rdm_planner_act found
 
-    planned: int  # 1; 0: the plan was followed, all else but cut and steps is 0
-    best: int  # sample that is best in the last iteration that was finished
-    cut: int  # 1: config.stop ended it early; else 0
-    ret: float  # of that sample: discounted sum of rewards, and the critic's value
-    cost: tuple[float, ...]  # of that sample, sums of each column
-    feasible_share: float  # of that iteration's samples: within what the limits leave
-    steps: int  # control steps of all rollouts
-    iterations: int  # finished: option iterations, or fewer with cut
+    planned: 1; 0: the plan was followed, all else but cut and steps is 0
+    best: sample that is best in the last iteration that was finished
+    cut: 1: config.stop ended it early; else 0
+    ret: of that sample: discounted sum of rewards, and the critic's value
+    cost: of that sample, sums of each column
+    feasible_share: of that iteration's samples: within what the limits leave
+    steps: control steps of all rollouts
+    iterations: finished: option iterations, or fewer with cut
+    """
+
+    planned: int
+    best: int
+    cut: int
+    ret: float
+    cost: tuple[float, ...]
+    feasible_share: float
+    steps: int
+    iterations: int
 
 
 class rdm_plan_info(Structure):
-    """struct_size: in: bytes
+    """what a call of rdm_planner_act found
+
+    struct_size: in: bytes
     planned: 1; 0: the plan was followed, all else but cut and steps is 0
     best: sample that is best in the last iteration that was finished
     cut: 1: config.stop ended it early; else 0
@@ -2063,22 +2536,20 @@ class rdm_plan_info(Structure):
 
 
 class Guard(Record):
-    """Costs that are functions of the action alone are half spaces: normal . action <= bound. The
-    nearest action that keeps them is a perfect shield, without copies: with cost_mode=command of the
-    throws it is a clip of three entries. A learned cost that is linear in the action,
-    c(s) + g(s) . a <= d, is such a half space too (Dalal et al. 2018): normal g, bound d - c.
+    """a half space of a pool's actions, clipped to [-1, 1]
+
+    column: of the cost that is 0 in every step while all guards of that column are kept
+    entry: the only entry of the normal that is not 0; -1: there are several
+    bound: of normal . action, at most
     """
 
-    column: int  # of the cost that is 0 in every step while all guards of that column are kept
-    entry: int  # the only entry of the normal that is not 0; -1: there are several
-    bound: float  # of normal . action, at most
+    column: int
+    entry: int
+    bound: float
 
 
 class rdm_guard(Structure):
-    """Costs that are functions of the action alone are half spaces: normal . action <= bound. The
-    nearest action that keeps them is a perfect shield, without copies: with cost_mode=command of the
-    throws it is a clip of three entries. A learned cost that is linear in the action,
-    c(s) + g(s) . a <= d, is such a half space too (Dalal et al. 2018): normal g, bound d - c.
+    """a half space of a pool's actions, clipped to [-1, 1]
 
     struct_size: in: bytes
     column: of the cost that is 0 in every step while all guards of that column are kept
@@ -2099,7 +2570,9 @@ class rdm_guard(Structure):
 
 
 class rdm_shield_config(Structure):
-    """struct_size: bytes, set by rdm_shield_config_init
+    """what a shield is made from
+
+    struct_size: bytes, set by rdm_shield_config_init
     num_threads: of the copies, 0 to 256; 0: as many as the pool has; default 0
     pool: whose task, options and number of worlds it is for; required; not kept
     seed: of noisy actions; default 0
@@ -2156,17 +2629,28 @@ class rdm_shield_config(Structure):
 
 
 class ShieldRow(Record):
-    """The values of rdm_shield_row."""
+    """what was done in a world's last decision, and why
 
-    kind: int  # RDM_SHIELD_*
-    column: int  # of what was refused: the cost that it would have met, -1: it was not, or the copy diverged; of what was projected: of the guard that it broke most, -1: the host's own
-    ahead: int  # control steps until that, 0: nothing was refused
-    backup: int  # that the plan continues by: a policy's number, then zero, then hold, of those that it has; -1: no other way was looked for
-    planned: int  # decisions that its plan still has, with the one to come next
+    kind: RDM_SHIELD_*
+    column: of what was refused: the cost that it would have met, -1: it was not, or the copy diverged; of what
+        was projected: of the guard that it broke most, -1: the host's own
+    ahead: control steps until that, 0: nothing was refused
+    backup: that the plan continues by: a policy's number, then zero, then hold, of those that it has; -1: no
+        other way was looked for
+    planned: decisions that its plan still has, with the one to come next
+    """
+
+    kind: int
+    column: int
+    ahead: int
+    backup: int
+    planned: int
 
 
 class rdm_shield_row(Structure):
-    """struct_size: in: bytes
+    """what was done in a world's last decision, and why
+
+    struct_size: in: bytes
     kind: RDM_SHIELD_*
     column: of what was refused: the cost that it would have met, -1: it was not, or the copy diverged; of what
         was projected: of the guard that it broke most, -1: the host's own
@@ -2193,20 +2677,32 @@ class rdm_shield_row(Structure):
 
 
 class ShieldStats(Record):
-    """The values of rdm_shield_stats."""
+    """counts since creation, of all worlds
 
-    decisions: int  # count
-    inquiries: int  # decisions that copies were asked about
-    failed: int  # inquiries whose proposed way met a cost
-    changed: int  # decisions of RDM_SHIELD_CHANGED
-    planned: int  # of RDM_SHIELD_PLAN
-    unproven: int  # of RDM_SHIELD_UNPROVEN
-    copied: int  # control steps that copies took
-    projected: int  # decisions of RDM_SHIELD_PROJECTED
+    decisions: count
+    inquiries: decisions that copies were asked about
+    failed: inquiries whose proposed way met a cost
+    changed: decisions of RDM_SHIELD_CHANGED
+    planned: of RDM_SHIELD_PLAN
+    unproven: of RDM_SHIELD_UNPROVEN
+    copied: control steps that copies took
+    projected: decisions of RDM_SHIELD_PROJECTED
+    """
+
+    decisions: int
+    inquiries: int
+    failed: int
+    changed: int
+    planned: int
+    unproven: int
+    copied: int
+    projected: int
 
 
 class rdm_shield_stats(Structure):
-    """struct_size: in: bytes
+    """counts since creation, of all worlds
+
+    struct_size: in: bytes
     reserved: 0
     decisions: count
     inquiries: decisions that copies were asked about
@@ -2243,7 +2739,9 @@ class rdm_shield_stats(Structure):
 
 
 class rdm_recording_config(Structure):
-    """struct_size: bytes, set by rdm_recording_config_init
+    """what a recording is made from
+
+    struct_size: bytes, set by rdm_recording_config_init
     obs_dim: count, 1..16384, required
     action_dim: count, 1..1024, required
     cost_dim: count, 0..RDM_MAX_COSTS, default 0
@@ -2292,23 +2790,38 @@ class rdm_recording_config(Structure):
 
 
 class RecordingInfo(Record):
-    """The values of rdm_recording_info."""
+    """what a recording holds
 
-    obs_dim: int  # count
-    action_dim: int  # count
-    cost_dim: int  # count
-    rows: int  # count
-    episodes: int  # count, those that have not ended too
-    num_states: int  # count
-    state_bytes: int  # of each
-    layout_hash: int  # 0: unknown
-    fingerprint: int  # of obs and label of all rows; what an agent that uses them is resumed by
-    task: str  # "" for a host's own environment
-    num_points: int  # of each row's cloud; 0: it has none
+    obs_dim: count
+    action_dim: count
+    cost_dim: count
+    rows: count
+    episodes: count, those that have not ended too
+    num_states: count
+    state_bytes: of each
+    layout_hash: 0: unknown
+    fingerprint: of obs and label of all rows; what an agent that uses them is resumed by
+    task: "" for a host's own environment
+    num_points: of each row's cloud; 0: it has none
+    """
+
+    obs_dim: int
+    action_dim: int
+    cost_dim: int
+    rows: int
+    episodes: int
+    num_states: int
+    state_bytes: int
+    layout_hash: int
+    fingerprint: int
+    task: str
+    num_points: int
 
 
 class rdm_recording_info(Structure):
-    """struct_size: in: bytes
+    """what a recording holds
+
+    struct_size: in: bytes
     obs_dim: count
     action_dim: count
     cost_dim: count
@@ -2418,7 +2931,9 @@ class rdm_recording_rows(Structure):
 
 
 class rdm_clone_config(Structure):
-    """struct_size: bytes, set by rdm_clone_config_init
+    """how rdm_agent_clone learns
+
+    struct_size: bytes, set by rdm_clone_config_init
     epochs: passes over the rows, at most, 1..100000, default 30
     batch_rows: of a minibatch, 1..2^20, default 512
     patience: epochs without a better validation loss that end it, 0: never; default 5
@@ -2464,19 +2979,30 @@ class rdm_clone_config(Structure):
 
 
 class CloneReport(Record):
-    """The values of rdm_clone_report."""
+    """what rdm_agent_clone did
 
-    epochs: int  # that were run
-    best_epoch: int  # from 1: whose weights were kept; without validation the last one's
-    stopped: int  # flag: it ended early
-    train_rows: int  # count
-    validation_rows: int  # count
-    train_loss: float  # of the best epoch, mean squared error of an entry
-    validation_loss: float  # likewise, 0 without validation
+    epochs: that were run
+    best_epoch: from 1: whose weights were kept; without validation the last one's
+    stopped: flag: it ended early
+    train_rows: count
+    validation_rows: count
+    train_loss: of the best epoch, mean squared error of an entry
+    validation_loss: likewise, 0 without validation
+    """
+
+    epochs: int
+    best_epoch: int
+    stopped: int
+    train_rows: int
+    validation_rows: int
+    train_loss: float
+    validation_loss: float
 
 
 class rdm_clone_report(Structure):
-    """struct_size: in: bytes
+    """what rdm_agent_clone did
+
+    struct_size: in: bytes
     epochs: that were run
     best_epoch: from 1: whose weights were kept; without validation the last one's
     stopped: flag: it ended early
@@ -2507,32 +3033,7 @@ class rdm_clone_report(Structure):
 
 
 class rdm_ranks(Structure):
-    """Each process has a pool and an agent of num_envs worlds; together they are one learner with ranks
-    * num_envs of them, whose bytes are those of one process with as many worlds and the same option
-    `blocks`, for any number of ranks. redman links no MPI: messages go through a hook.
-
-      rdm_ranks r = {.struct_size = sizeof r, .rank = 1, .ranks = 4, .user = &mine,
-                     .gather = my_allgather};
-      rdm_pool_set_rank(pool, r.rank, r.ranks);
-      c.settings = "blocks=16";    // ranks times a power of two, which divides all worlds
-      rdm_agent_create_ranked(&agent, &c, &r);
-      for (...) rdm_agent_rollout(agent, pool, &e);
-                                   // e, policy and saved state are the same on each rank
-
-    Configs are the same on all ranks but for num_threads, hooks and texts. All of them make the same
-    calls of rollout, act with RDM_ACT_SAMPLE, record, put, update, save with memory,
-    rdm_checkpoint_write: these exchange messages, in one order. Each cuts its updates into slices as
-    it likes, which wait for the others' where they exchange; what ends one is rdm_agent_cancel.
-    Loading exchanges nothing: each takes its own part. A state that was saved by some ranks
-    continues with any other number that `blocks` allows.
-      - CANCELLED: a hook failed (a rank is gone), or rdm_agent_cancel was called on one rank, which
-        stops all of them at one place. The handles are good; after a failed hook, what ranks have
-        learned may differ: load a state that was saved.
-      - STATE: ranks are set up differently, which the first exchange looks for (the rank and number
-        of ranks, the library's version, seed, sizes and options of agent and pool); or are out of
-        step; or one has drifted, which each update looks for. The text names what and whose.
-      - a rank whose call fails otherwise leaves the others waiting in their hooks, unless it ends
-        and these notice.
+    """who learns together, and how messages go from one to the other
 
     struct_size: bytes
     rank: of this process, 0..ranks - 1; its world 0 is number rank * num_envs of all
@@ -2626,7 +3127,7 @@ class rdm_robot_link(Structure):
 
 
 class rdm_robot_shape(Structure):
-    """frozen layout: a link and the joint that moves it; m, rad, kg, N, s
+    """frozen layout: what of a link can be touched and seen
 
     name: unique
     link: row, RDM_LINK_ROOT
@@ -2656,10 +3157,14 @@ class rdm_robot_shape(Structure):
 
 
 class RobotPair(Record):
-    """frozen layout: two shapes of one robot that may touch each other"""
+    """frozen layout: two shapes of one robot that may touch each other
 
-    a: int  # rows of shapes
-    b: int  # rows of shapes
+    a: rows of shapes
+    b: rows of shapes
+    """
+
+    a: int
+    b: int
 
 
 class rdm_robot_pair(Structure):
@@ -2678,12 +3183,18 @@ class rdm_robot_pair(Structure):
 
 
 class RobotCoupling(Record):
-    """frozen layout: a joint that a tendon or belt lets follow another"""
+    """frozen layout: a joint that a tendon or belt lets follow another
 
-    link: int  # row whose joint follows
-    other: int  # row whose joint leads; itself no follower
-    ratio: float  # q = ratio q_other
-    slack: float  # rad: within it the joint goes freely
+    link: row whose joint follows
+    other: row whose joint leads; itself no follower
+    ratio: q = ratio q_other
+    slack: rad: within it the joint goes freely
+    """
+
+    link: int
+    other: int
+    ratio: float
+    slack: float
 
 
 class rdm_robot_coupling(Structure):
@@ -2708,13 +3219,20 @@ class rdm_robot_coupling(Structure):
 
 
 class RobotCurve(Record):
-    """frozen layout: the target of a joint, piecewise linear in a command of -1 to 1"""
+    """frozen layout: the target of a joint, piecewise linear in a command of -1 to 1
 
-    link: int  # row
-    driver: int  # row whose command it is: the same, or that of the motor
-    num_knots: int  # 2 to RDM_MAX_KNOTS
-    command: tuple[float, ...]  # ascending
-    angle: tuple[float, ...]  # in the joint's range, rad (m)
+    link: row
+    driver: row whose command it is: the same, or that of the motor
+    num_knots: 2 to RDM_MAX_KNOTS
+    command: ascending
+    angle: in the joint's range, rad (m)
+    """
+
+    link: int
+    driver: int
+    num_knots: int
+    command: tuple[float, ...]
+    angle: tuple[float, ...]
 
 
 class rdm_robot_curve(Structure):
@@ -2745,16 +3263,26 @@ class rdm_robot_curve(Structure):
 
 
 class RobotFinger(Record):
-    """frozen layout: its rows stand together, from `first` to `tip`"""
+    """frozen layout: its rows stand together, from `first` to `tip`
 
-    name: str  # short: it begins the names of its observations
-    first: int  # row of its first link
-    tip: int  # row of its last; it carries the force sensor
-    lateral: int  # row of the joint that spreads it to a side, -1: none
-    proximal: int  # row of the joint that bends it at its base, -1: none
-    middle: int  # row of the next joint that bends it, -1: none
-    thumb: int  # flag
-    p_tip: tuple[float, ...]  # its end, in the frame of `tip`, m
+    name: short: it begins the names of its observations
+    first: row of its first link
+    tip: row of its last; it carries the force sensor
+    lateral: row of the joint that spreads it to a side, -1: none
+    proximal: row of the joint that bends it at its base, -1: none
+    middle: row of the next joint that bends it, -1: none
+    thumb: flag
+    p_tip: its end, in the frame of `tip`, m
+    """
+
+    name: str
+    first: int
+    tip: int
+    lateral: int
+    proximal: int
+    middle: int
+    thumb: int
+    p_tip: tuple[float, ...]
 
 
 class rdm_robot_finger(Structure):
@@ -2791,7 +3319,7 @@ class rdm_robot_finger(Structure):
 
 
 class rdm_robot_def(Structure):
-    """frozen layout: its rows stand together, from `first` to `tip`
+    """a whole robot; the arrays are copied by rdm_robot_create
 
     struct_size: bytes, set by rdm_robot_def_init
     kind: RDM_ROBOT_*
@@ -2938,7 +3466,9 @@ class rdm_shape_def(Structure):
 
 
 class rdm_object_def(Structure):
-    """struct_size: bytes, set by rdm_object_def_init
+    """a whole object; rdm_object_create copies it with its shapes
+
+    struct_size: bytes, set by rdm_object_def_init
     num_shapes: 1 to RDM_MAX_SHAPES
     name: letters, digits, '_', '-', '+'; at most 25
     alias: another name; NULL
@@ -2976,7 +3506,9 @@ class rdm_object_def(Structure):
 
 
 class rdm_body_def(Structure):
-    """struct_size: bytes
+    """a free body; its frame is at its centre of mass
+
+    struct_size: bytes
     num_shapes: count
     name: unique among bodies and robots
     shapes: [num_shapes] 1 or more
@@ -3058,21 +3590,35 @@ class rdm_scene_robot(Structure):
 
 
 class ContactLaw(Record):
-    """The values of rdm_contact_law."""
+    """how two materials meet beside their friction
 
-    pyramid: int  # flag, of soft contacts: friction by edges, as MuJoCo has it by default: the softer the more it rubs, and sliding lifts
-    restitution: float  # 0 to 1: share of the speed at which a hard contact closed, above 0.05 m/s, that it parts with
-    torsional: float  # m, 0 to 10: rotation about the normal is opposed by at most this times the normal force
-    rolling: float  # m, 0 to 10: rolling likewise
-    time_constant: float  # s, to 10: a spring and damper, as MuJoCo's solref; 0: hard. At least two substeps count
-    damping_ratio: float  # of it, 0.01 to 100; default 1
-    impedance_min: float  # 1e-4 to 0.9999, of a touch, as MuJoCo's solimp; default 0.9
-    impedance_max: float  # likewise, deeper than the width; default 0.95
-    impedance_width: float  # m, to 10; default 0.001
+    pyramid: flag, of soft contacts: friction by edges, as MuJoCo has it by default: the softer the more it
+        rubs, and sliding lifts
+    restitution: 0 to 1: share of the speed at which a hard contact closed, above 0.05 m/s, that it parts with
+    torsional: m, 0 to 10: rotation about the normal is opposed by at most this times the normal force
+    rolling: m, 0 to 10: rolling likewise
+    time_constant: s, to 10: a spring and damper, as MuJoCo's solref; 0: hard. At least two substeps count
+    damping_ratio: of it, 0.01 to 100; default 1
+    impedance_min: 1e-4 to 0.9999, of a touch, as MuJoCo's solimp; default 0.9
+    impedance_max: likewise, deeper than the width; default 0.95
+    impedance_width: m, to 10; default 0.001
+    """
+
+    pyramid: int
+    restitution: float
+    torsional: float
+    rolling: float
+    time_constant: float
+    damping_ratio: float
+    impedance_min: float
+    impedance_max: float
+    impedance_width: float
 
 
 class rdm_contact_law(Structure):
-    """struct_size: bytes, set by rdm_contact_law_init
+    """how two materials meet beside their friction
+
+    struct_size: bytes, set by rdm_contact_law_init
     pyramid: flag, of soft contacts: friction by edges, as MuJoCo has it by default: the softer the more it
         rubs, and sliding lifts
     restitution: 0 to 1: share of the speed at which a hard contact closed, above 0.05 m/s, that it parts with
@@ -3140,7 +3686,7 @@ class rdm_joints(Structure):
 
 
 class rdm_motion(Structure):
-    """the joints of all robots of a world; the addresses hold within the call
+    """frozen layout: of a frame, in the world
 
     pose: where it is
     v: velocity of the frame's origin, m/s
@@ -3158,16 +3704,24 @@ class rdm_motion(Structure):
 
 
 class Factor(Record):
-    """The values of rdm_factor."""
+    """frozen layout: on a constant of the scene, in one world
 
-    what: int  # RDM_SCALE_*
-    index: int  # of the link, robot or body, or the first material
-    other: int  # the second material of a friction
-    factor: float  # times the scene's value
+    what: RDM_SCALE_*
+    index: of the link, robot or body, or the first material
+    other: the second material of a friction
+    factor: times the scene's value
+    """
+
+    what: int
+    index: int
+    other: int
+    factor: float
 
 
 class rdm_factor(Structure):
-    """what: RDM_SCALE_*
+    """frozen layout: on a constant of the scene, in one world
+
+    what: RDM_SCALE_*
     index: of the link, robot or body, or the first material
     other: the second material of a friction
     reserved: 0
@@ -3189,16 +3743,24 @@ class rdm_factor(Structure):
 
 
 class Random(Record):
-    """The values of rdm_random."""
+    """frozen layout: a stream of random numbers; may be part of a state
 
-    seed: int  # its name
-    counter: int  # draws so far
-    world: int  # its name
-    purpose: int  # its name
+    seed: its name
+    counter: draws so far
+    world: its name
+    purpose: its name
+    """
+
+    seed: int
+    counter: int
+    world: int
+    purpose: int
 
 
 class rdm_random(Structure):
-    """seed: its name
+    """frozen layout: a stream of random numbers; may be part of a state
+
+    seed: its name
     counter: draws so far
     world: its name
     purpose: its name
@@ -3217,17 +3779,26 @@ class rdm_random(Structure):
 
 
 class Verdict(Record):
-    """The values of rdm_verdict."""
+    """what judge fills; zeroed before
 
-    reward: float  # of the step
-    cost: tuple[float, ...]  # each column of the step, 0 or more
-    cost_raw: tuple[float, ...]  # the measured value behind each
-    terminated: int  # flag: the episode ends here
-    success: int  # flag
+    reward: of the step
+    cost: each column of the step, 0 or more
+    cost_raw: the measured value behind each
+    terminated: flag: the episode ends here
+    success: flag
+    """
+
+    reward: float
+    cost: tuple[float, ...]
+    cost_raw: tuple[float, ...]
+    terminated: int
+    success: int
 
 
 class rdm_verdict(Structure):
-    """reward: of the step
+    """what judge fills; zeroed before
+
+    reward: of the step
     cost: each column of the step, 0 or more
     cost_raw: the measured value behind each
     terminated: flag: the episode ends here
@@ -3289,17 +3860,24 @@ class rdm_task_rows(Structure):
 
 
 class FieldDef(Record):
-    """what a function of many worlds is called with; row i is of worlds[i]"""
+    """frozen layout: a run of observation entries
 
-    name: str  # unique, at most 31 characters: "cup.position"
-    unit: str  # of a stored 1: "m", "5 rad/s", "1"
-    count: int  # entries
-    low: float  # what no entry leaves; low equal to high: none but obs_limit
-    high: float  # likewise
+    name: unique, at most 31 characters: "cup.position"
+    unit: of a stored 1: "m", "5 rad/s", "1"
+    count: entries
+    low: what no entry leaves; low equal to high: none but obs_limit
+    high: likewise
+    """
+
+    name: str
+    unit: str
+    count: int
+    low: float
+    high: float
 
 
 class rdm_field_def(Structure):
-    """what a function of many worlds is called with; row i is of worlds[i]
+    """frozen layout: a run of observation entries
 
     name: unique, at most 31 characters: "cup.position"
     unit: of a stored 1: "m", "5 rad/s", "1"
@@ -3326,15 +3904,20 @@ class rdm_field_def(Structure):
 
 
 class CostDef(Record):
-    """what a function of many worlds is called with; row i is of worlds[i]"""
+    """frozen layout: a cost column
 
-    name: str  # unique: "touch"
-    help: str  # one line
-    limit: float  # default limit on the sum over an episode; < 0: none
+    name: unique: "touch"
+    help: one line
+    limit: default limit on the sum over an episode; < 0: none
+    """
+
+    name: str
+    help: str
+    limit: float
 
 
 class rdm_cost_def(Structure):
-    """what a function of many worlds is called with; row i is of worlds[i]
+    """frozen layout: a cost column
 
     name: unique: "touch"
     help: one line
@@ -3352,21 +3935,32 @@ class rdm_cost_def(Structure):
 
 
 class OptionDef(Record):
-    """what a function of many worlds is called with; row i is of worlds[i]"""
+    """frozen layout: one row of an option table, as rdm_option_spec
 
-    key: str  # letters, digits, '_', '-', '.'
-    help: str  # one line, with the unit; unused of one that every task has
-    text: str | None  # default of a text option, or of a number that is a range, else NULL
-    choices: str | None  # text: allowed words "a|b|c", NULL: any; number, integer: "a..b": takes a range too; else NULL
-    number: float  # default of number, integer, flag; of a range its middle
-    low: float  # inclusive bounds
-    high: float  # inclusive bounds
-    kind: int  # RDM_KIND_NUMBER, RDM_KIND_INTEGER, RDM_KIND_FLAG, RDM_KIND_TEXT
-    live: int  # unused
+    key: letters, digits, '_', '-', '.'
+    help: one line, with the unit; unused of one that every task has
+    text: default of a text option, or of a number that is a range, else NULL
+    choices: text: allowed words "a|b|c", NULL: any; number, integer: "a..b": takes a range too; else NULL
+    number: default of number, integer, flag; of a range its middle
+    low: inclusive bounds
+    high: inclusive bounds
+    kind: RDM_KIND_NUMBER, RDM_KIND_INTEGER, RDM_KIND_FLAG, RDM_KIND_TEXT
+    live: unused
+    """
+
+    key: str
+    help: str
+    text: str | None
+    choices: str | None
+    number: float
+    low: float
+    high: float
+    kind: int
+    live: int
 
 
 class rdm_option_def(Structure):
-    """what a function of many worlds is called with; row i is of worlds[i]
+    """frozen layout: one row of an option table, as rdm_option_spec
 
     key: letters, digits, '_', '-', '.'
     help: one line, with the unit; unused of one that every task has
@@ -3402,20 +3996,31 @@ class rdm_option_def(Structure):
 
 
 class CameraDef(Record):
-    """what a function of many worlds is called with; row i is of worlds[i]"""
+    """frozen layout: a pinhole camera, as rdm_camera_info
 
-    name: str  # unique: "front"
-    eye: tuple[float, ...]  # m, in the frame that mount names
-    target: tuple[float, ...]  # m, likewise; the optical axis runs from eye to target
-    fov_y: float  # vertical field of view, rad, 0.01 to 3
-    mount: int  # 0: the world's frame; k > 0: of link k - 1; -k: of base k - 1
-    up: tuple[float, ...]  # likewise: what points up in the picture; all 0: z
-    cx: float  # where the optical axis meets the picture: to the right of its centre, as a share of its width, within +-10
-    cy: float  # likewise: below its centre, as a share of its height
+    name: unique: "front"
+    eye: m, in the frame that mount names
+    target: m, likewise; the optical axis runs from eye to target
+    fov_y: vertical field of view, rad, 0.01 to 3
+    mount: 0: the world's frame; k > 0: of link k - 1; -k: of base k - 1
+    up: likewise: what points up in the picture; all 0: z
+    cx: where the optical axis meets the picture: to the right of its centre, as a share of its width, within
+        +-10
+    cy: likewise: below its centre, as a share of its height
+    """
+
+    name: str
+    eye: tuple[float, ...]
+    target: tuple[float, ...]
+    fov_y: float
+    mount: int
+    up: tuple[float, ...]
+    cx: float
+    cy: float
 
 
 class rdm_camera_def(Structure):
-    """what a function of many worlds is called with; row i is of worlds[i]
+    """frozen layout: a pinhole camera, as rdm_camera_info
 
     name: unique: "front"
     eye: m, in the frame that mount names
@@ -3452,7 +4057,7 @@ class rdm_camera_def(Structure):
 
 
 class rdm_task_def(Structure):
-    """what a function of many worlds is called with; row i is of worlds[i]
+    """a whole task; all but `user` is copied by rdm_task_create
 
     struct_size: bytes, set by rdm_task_def_init
     max_steps: control steps of an episode: default of the option max_steps; default 100

@@ -24,10 +24,13 @@ from ._names import Hinted, keywords, nearest
 from ._options import Given, Options, Value, kind_of, laid, option_array, read_settings, settings_of
 from ._policy import Policy
 from ._pool import Pool
+from ._recording import Recording
 from ._rows import Array, FloatArray, address, clouds, given
+from ._teach import Taught
 from ._tensors import Tensors
 
 if TYPE_CHECKING:
+    from ._ranks import Ranks
     from ._shield import Shield
 
 _MODES = {"sample": ActMode.SAMPLE, "mean": ActMode.MEAN}
@@ -81,7 +84,7 @@ class _AgentTensors(Tensors, MutableMapping[str, FloatArray]):
         raise TypeError("tensors cannot be deleted")
 
 
-class Agent(Hinted):
+class Agent(Taught, Hinted):
     """Learns from a pool, or from rows of any origin.
 
         agent = redman.Agent(pool, algo="ppo_lag", seed=1, cost_limits=40)
@@ -94,7 +97,7 @@ class Agent(Hinted):
 
     cost_limits: of column 0, of each column (None, or NaN in an array: no limit), or by the names of the pool's costs. A pool brings its
     dimensions, its task's defaults for learners, start pose and limits; fields, {name: (offset, count)}, name the parts
-    of other rows for actor_obs and critic_obs. One thread at a time; others wait.
+    of other rows for actor_obs and critic_obs. ranks: the agent of one process of several (redman.Ranks). One thread at a time; others wait.
     """
 
     _hints = {
@@ -111,8 +114,9 @@ class Agent(Hinted):
                  obs_dim: Optional[int] = None, action_dim: Optional[int] = None, num_envs: int = 1,
                  cost_dim: int = 1, task: str = "", control_dt: float = 0.0, max_steps: int = 0,
                  layout_hash: int = 0, initial_mean: Any = None,
-                 fields: Optional[Mapping[str, tuple[int, int]]] = None) -> None:
-        own: dict[str, Any] = {"algo": algo, "seed": seed, "num_threads": threads, "options": dict(options or {})}
+                 fields: Optional[Mapping[str, tuple[int, int]]] = None, ranks: Optional[Ranks] = None) -> None:
+        own: dict[str, Any] = {"algo": algo, "seed": seed, "num_threads": threads, "options": dict(options or {}),
+                               "ranks": ranks}
         if pool is not None:
             if obs_dim is not None or action_dim is not None:
                 raise ArgumentError("agent: a pool brings its dimensions; give it or them")
@@ -137,6 +141,7 @@ class Agent(Hinted):
         self._handle: Optional[Handle] = _created(config)
         self._a = self._handle.value
         self._shield: Optional[Shield] = None
+        self._recording: Optional[Recording] = None
         self.algo: _discovery.Algo = _discovery.algo(config["algo"])
         self.obs_dim, self.action_dim = int(config["obs_dim"]), int(config["action_dim"])
         self.cost_dim, self.num_envs = int(config["cost_dim"]), int(config["num_envs"])
@@ -317,10 +322,7 @@ class Agent(Hinted):
 
     def _renew(self) -> None:
         """The same agent without the cancel that came too late to be heard."""
-        state, shield = self.save(), self._shield
-        self._make(self._config)
-        self.load(state)
-        self.shield = shield
+        self.__setstate__(self.__getstate__())
 
     def _epoch(self, struct: _abi.rdm_epoch) -> Epoch:
         return Epoch(struct, self._config["cost_names"])
@@ -428,11 +430,13 @@ class Agent(Hinted):
         self.close()
 
     def __getstate__(self) -> dict[str, Any]:
-        return {"config": self._config, "state": self.save(), "shield": self._shield}
+        return {"config": self._config, "state": self.save(), "shield": self._shield, "recording": self._recording}
 
     def __setstate__(self, saved: Mapping[str, Any]) -> None:
-        self._lock = threading.RLock()
+        if not hasattr(self, "_lock"):
+            self._lock = threading.RLock()
         self._make(saved["config"])
+        self.recording = saved["recording"]
         self.load(saved["state"])
         self.shield = saved["shield"]
 
@@ -503,4 +507,7 @@ def _created(own: Mapping[str, Any]) -> Handle:
     for field, (name, unit, offset, count) in zip(fields, own["fields"]):
         field.name, field.unit, field.offset, field.count = encoded(name), encoded(unit), offset, count
     config.fields, config.num_fields = fields, len(fields)
+    ranks: Optional[Ranks] = own["ranks"]
+    if ranks is not None:
+        return Handle(lib.rdm_agent_create_ranked, lib.rdm_agent_destroy, byref(config), byref(ranks._struct))
     return Handle(lib.rdm_agent_create, lib.rdm_agent_destroy, byref(config))

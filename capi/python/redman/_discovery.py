@@ -2,16 +2,18 @@
 from __future__ import annotations
 
 import ctypes
+import os
 import re
 from ctypes import byref, c_int32
 from functools import lru_cache
-from typing import Any, Callable, Iterator, Optional, TypeVar, Union
+from typing import Any, Callable, Dict, Iterable, Iterator, Optional, TypeVar, Union
 
 from . import _abi
 from ._abi import OptionKind, OptionLevel
-from ._error import NotFoundError, UsageError
+from ._error import UsageError
 from ._library import encoded, filled, check, lib, sized
 from ._options import Value, default_of, laid
+from ._paths import named
 from ._record import Record
 
 R = TypeVar("R", bound=Record)
@@ -44,6 +46,7 @@ class Field(_abi.FieldInfo):
 
     @property
     def slice(self) -> slice:
+        """Its entries of a row."""
         return slice(self.offset, self.offset + self.count)
 
 
@@ -54,10 +57,6 @@ class Camera(_abi.CameraInfo):
 
 class Shape(_abi.ShapeInfo):
     """A part of what the scene is made of; kind is a redman.ShapeKind."""
-
-
-class Object(_abi.ObjectInfo):
-    """An object by name, for option object; kind is the redman.ShapeKind of its only shape, -1 where it has several."""
 
 
 class Joint(_abi.JointInfo):
@@ -76,9 +75,30 @@ def _records(kind: type[R], struct: type[ctypes.Structure], call: Callable[..., 
     return {getattr(row, "name", "") or getattr(row, "key"): row for row in rows}
 
 
+def all_of(kind: type[R], struct: type[ctypes.Structure], call: Callable[..., int], *before: Any) -> list[R]:
+    """Records of all rows that call(*before, i, &struct) knows, which RANGE ends."""
+    out: list[R] = []
+    row = sized(struct)
+    while not call(*before, len(out), byref(row)):
+        out.append(kind(row))
+    return out
+
+
+class Listed(Dict[str, R]):
+    """What there is, by name; also found by other names that the library knows, as an alias. NotFoundError offers the nearest."""
+
+    def __init__(self, rows: Iterable[R], called: Callable[[str], R]) -> None:
+        super().__init__((getattr(row, "name"), row) for row in rows)
+        self._called = called
+
+    def __missing__(self, name: str) -> R:
+        return self._called(name)
+
+
 class Task(_abi.Task):
     """A task with its default options; fields, costs, options and cameras by name, in their order."""
 
+    number: int  # of the task in this process
     fields: dict[str, Field]
     costs: dict[str, Cost]
     options: dict[str, Option]
@@ -88,6 +108,7 @@ class Task(_abi.Task):
     def __init__(self, index: int) -> None:
         super().__init__(filled(_abi.rdm_task, lib.rdm_task_at, index))
         said = self.__dict__
+        said["number"] = index
         said["fields"] = fields_of(index, self.num_fields, lib.rdm_task_field_at)
         said["costs"] = _records(Cost, _abi.rdm_cost_info, lib.rdm_task_cost_at, self.cost_dim, index)
         said["options"] = _records(Option, _abi.rdm_option_spec, lib.rdm_task_option_at, self.num_options, index)
@@ -97,6 +118,10 @@ class Task(_abi.Task):
 
     def __repr__(self) -> str:
         return f"<Task {self.name}: {self.summary}>"
+
+    def remove(self) -> None:
+        """Takes a task of your own, or of a .task file, out of this process; pools that have it keep it."""
+        check(lib.rdm_task_destroy(self.number))
 
 
 class Algo(_abi.Algo):
@@ -113,15 +138,8 @@ class Algo(_abi.Algo):
         return f"<Algo {self.name}: {self.summary}>"
 
 
-class Robot(_abi.Robot):
-    """A robot description with its joints by name."""
-
-    joints: dict[str, Joint]
-
-    def __init__(self, index: int) -> None:
-        super().__init__(filled(_abi.rdm_robot, lib.rdm_robot_at, index))
-        self.__dict__["joints"] = _records(
-            Joint, _abi.rdm_joint_info, lib.rdm_robot_joint_at, self.num_joints, index)
+# Of functions that take a task: its name, its .task file, its id in Gymnasium, or what task(name) gave.
+TaskName = Union[str, "os.PathLike[str]", Task]
 
 
 @lru_cache(maxsize=None)
@@ -141,36 +159,36 @@ def find(call: Callable[..., int], name: str) -> int:
     return index.value
 
 
-def _listed(at: Callable[[int], R], count: int) -> Iterator[R]:
-    """Those of the numbers below count that were not destroyed since."""
+def listed(at: Callable[[int], R], struct: type[ctypes.Structure], call: Callable[..., int], count: int) -> Iterator[R]:
+    """Records of the numbers below count that were not destroyed since: of those that are kept, the library is asked too."""
+    row = sized(struct)
     for index in range(count):
-        try:
+        if call(index, byref(row)) == 0:
             yield at(index)
-        except NotFoundError:
-            pass
 
 
 def tasks() -> dict[str, Task]:
     """All tasks by name; empty without the simulation half."""
-    return {task.name: task for task in _listed(task_at, lib.rdm_task_count())}
+    return Listed(listed(task_at, _abi.rdm_task, lib.rdm_task_at, lib.rdm_task_count()), task)
 
 
 def algos() -> dict[str, Algo]:
     """All learners by name; empty without the learning half."""
-    return {algo.name: algo for algo in map(algo_at, range(lib.rdm_algo_count()))}
+    return Listed(map(algo_at, range(lib.rdm_algo_count())), algo)
 
 
-def task(name: Union[str, Task]) -> Task:
+def task(name: TaskName) -> Task:
     """One task; case is ignored and '-' equals '_'. NotFoundError offers the nearest name."""
     return task_at(find(lib.rdm_task_find, task_name(name)))
 
 
-def task_name(task: Union[str, Task]) -> str:
-    """The name of a task that is given as its name, as Task, or as its id in Gymnasium (redman/BallRun-v0)."""
+def task_name(task: TaskName) -> str:
+    """The name of a task that is given as its name, as Task, as a .task file, or as its id in Gymnasium (redman/BallRun-v0)."""
     if isinstance(task, Task):
         return task.name
-    if not isinstance(task, str):
-        raise UsageError(f"task: the name of a task, not {task!r}")
+    if not isinstance(task, (str, os.PathLike)):
+        raise UsageError(f"task: the name of a task or a .task file, not {task!r}")
+    task = named("task", task)
     found = re.fullmatch(r"redman/(\w+)-v\d+", task)
     return found[1] if found else task
 
@@ -180,19 +198,14 @@ def algo(name: str) -> Algo:
     return algo_at(find(lib.rdm_algo_find, name))
 
 
-def robots() -> dict[str, Robot]:
-    """All robot descriptions by name."""
-    return {robot.name: robot for robot in _listed(Robot, lib.rdm_robot_count())}
+def options_of(call: Callable[..., int]) -> dict[str, Option]:
+    """All options by key that call(i, &row) knows."""
+    return {option.key: option for option in all_of(Option, _abi.rdm_option_spec, call)}
 
 
 @lru_cache(maxsize=None)
 def _shield_options() -> dict[str, Option]:
-    row = sized(_abi.rdm_option_spec)
-    out: dict[str, Option] = {}
-    while not lib.rdm_shield_option_at(len(out), byref(row)):
-        option = Option(row)
-        out[option.key] = option
-    return out
+    return options_of(lib.rdm_shield_option_at)
 
 
 def shield_options() -> dict[str, Option]:
@@ -200,10 +213,9 @@ def shield_options() -> dict[str, Option]:
     return dict(_shield_options())
 
 
-def objects() -> dict[str, Object]:
-    """All objects by name, for option object."""
-    return {thing.name: thing for thing in _listed(
-        lambda index: Object(filled(_abi.rdm_object_info, lib.rdm_object_info_at, index)), lib.rdm_object_count())}
+def features() -> _abi.Feature:
+    """The halves that this library has: Feature.SIM | Feature.LEARN | Feature.POLICY."""
+    return _abi.Feature(lib.rdm_features())
 
 
 def build() -> _abi.Build:

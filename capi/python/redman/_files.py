@@ -23,6 +23,12 @@ def _beside(path: Path) -> str:
     return nearest(path.name, names)
 
 
+def must_exist(path: Union[str, os.PathLike[str]], what: str) -> None:
+    """MissingFileError, with the nearest name, where there is nothing; what: whose file it is."""
+    if not os.path.exists(path):
+        raise MissingFileError(f"{what} {os.fspath(path)}: there is no such file{_beside(Path(path))}")
+
+
 MOST_BYTES = 1 << 28  # of a policy or a checkpoint
 MOST_TEXT = 1 << 26  # of a table
 MOST_TASK = 1 << 22

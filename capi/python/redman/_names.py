@@ -112,9 +112,6 @@ class Hinted:
 
 # Of the module: what to write instead.
 _MODULE_HINTS = {
-    "make": "redman.Pool(task, num_envs) has worlds; after import redman.gym gymnasium.make('redman/BallRun-v0') too",
-    "make_vec": "redman.Pool(task, num_envs), or redman.gym.VectorEnv(task, num_envs)",
-    "load": "redman.Policy.load(path) reads a policy or a run folder, redman.curve(folder) its curve",
     "save": "policy.save(path), agent.save(path), redman.train(..., out=folder)",
     "learn": "redman.train(task, steps=...)", "PPO": "redman.train(task, algo='ppo')",
     "envs": "redman.tasks()", "list_tasks": "redman.tasks()", "registry": "redman.tasks()", "Env": "redman.gym.Env",

@@ -14,10 +14,10 @@ from ._actor import worlds_of
 from ._error import ArgumentError, Error, NotFoundError
 from ._names import nearest
 from ._options import Options
-from ._policy import Origin, Policy
+from ._policy import Backup, Origin, Policy
 from ._pool import Pool
 from ._rows import Array, DoubleArray, FloatArray
-from ._shield import Backup, Shield, Shielding, shield_of
+from ._shield import Shield, Shielding, shield_of
 from ._worlds import Center, center_of
 
 if TYPE_CHECKING:

@@ -13,7 +13,8 @@ import numpy as np
 
 from . import _abi, _discovery
 from ._actor import Actor, on_task
-from ._error import ArgumentError, FileError, FormatError, MissingFileError, VersionError
+from ._error import ArgumentError, FileError, FormatError, MissingFileError, UsageError, VersionError
+from ._export import export
 from ._files import MOST_JSON, read_bytes, read_whole, write_whole
 from ._hold import decided, warn
 from ._library import Handle, check, filled, lib, policy_folders
@@ -51,6 +52,10 @@ class Origin:
             raise FileError(f"run {folder}: config.json: {error.strerror}") from None
         except (ValueError, KeyError, TypeError, AttributeError) as error:
             raise FormatError(f"run {folder}: config.json is not a run's: {error!r}") from None
+
+
+# A policy, its file or run folder, or "trained": the one that comes with the task.
+Backup = Union["Policy", str, "os.PathLike[str]"]
 
 
 class Policy(Hinted):
@@ -98,7 +103,7 @@ class Policy(Hinted):
             raise FormatError(f"policy {path}{text[len('policy'):]}" if text.startswith("policy") else text) from None
 
     @classmethod
-    def trained(cls, task: Union[str, _discovery.Task]) -> Policy:
+    def trained(cls, task: _discovery.TaskName) -> Policy:
         """The bundled policy of a task: the one of `redman eval --policy trained`."""
         name = _discovery.task(task).name
         for folder in policy_folders():
@@ -109,6 +114,14 @@ class Policy(Hinted):
     def save(self, path: Union[str, os.PathLike[str]]) -> None:
         """Writes the policy file, whole or not at all."""
         write_whole(path, self._bytes, "policy")
+
+    def export(self, path: Union[str, os.PathLike[str]], *, name: Optional[str] = None, int8: bool = False) -> None:
+        """Writes the policy for other programs, by the ending of the path: .onnx (normaliser, network and clip in one graph), .c
+        (a C99 function that needs no heap and no library), .safetensors, .rdm (as save). The command `redman export` makes them.
+
+        name: begins the names in the C file, None: the task. int8: its weights in 8 bits.
+        """
+        export(self, path, name, int8)
 
     def __bytes__(self) -> bytes:
         return self._bytes
@@ -146,6 +159,24 @@ class Policy(Hinted):
         return decided(action if observed.ndim == 2 else action.reshape(-1), self.info.action_repeat)
 
     __call__ = act
+
+    def sample(self, obs: Any, noise: Any = None) -> tuple[FloatArray, FloatArray]:
+        """(action, mean), both [n][action_dim] for rows [n][obs_dim], not clipped, as an agent samples: mean + std noise, with
+        standard normals noise [n][action_dim], None: those of numpy's global generator. What agent.put takes."""
+        rows_of = _abi.FUNCTIONS["rdm_policy_sample"].rows
+        observed = np.atleast_2d(np.asarray(obs))
+        if observed.ndim != 2 or observed.shape[1] != self.info.obs_dim:
+            raise ArgumentError(f"obs: shape {np.shape(obs)} does not fit (rows, {self.info.obs_dim})")
+        lengths = {"rows": len(observed), "obs_dim": self.info.obs_dim, "action_dim": self.info.action_dim}
+        shape = (len(observed), self.info.action_dim)
+        drawn = given(np.random.standard_normal(shape) if noise is None else noise, rows_of["noise"], lengths, "noise")
+        action, mean = np.empty(shape, np.float32), np.empty(shape, np.float32)
+        if len(observed):
+            seen = given(observed, rows_of["obs"], lengths, "obs")
+            size, scratch = self._scratch(len(observed))
+            check(lib.rdm_policy_sample(self._handle.value, seen.ctypes.data, len(observed), drawn.ctypes.data,
+                                        action.ctypes.data, mean.ctypes.data, scratch, size))
+        return action, mean
 
     def novelty(self, obs: Any) -> Any:
         """How far an observation [obs_dim], or rows [n][obs_dim], are from those that it learned on: a float, or [n].
@@ -240,6 +271,11 @@ class Policy(Hinted):
         return out[:count.value]
 
     @property
+    def fields(self) -> dict[str, _discovery.Field]:
+        """What each entry of an observation means, by name; empty where the file does not say."""
+        return _discovery.fields_of(self._open(), self.info.num_fields, lib.rdm_policy_field_at)
+
+    @property
     def tensors(self) -> Tensors:
         """Weights and normaliser by name, and an example of the network's input and output."""
         return Tensors(self, lib.rdm_policy_tensor_at, lib.rdm_policy_get_tensor)
@@ -262,3 +298,14 @@ class Policy(Hinted):
     def __repr__(self) -> str:
         i = self.info
         return f"<Policy {i.task or 'of your own task'}: {i.obs_dim} to {i.action_dim}, {i.num_params} parameters>"
+
+
+def policy_of(policy: Backup, task: _discovery.TaskName) -> Policy:
+    """A policy as it may be said."""
+    if isinstance(policy, Policy):
+        return policy
+    if isinstance(policy, str) and policy == "trained":
+        return Policy.trained(task)
+    if isinstance(policy, (str, os.PathLike)):
+        return Policy.load(policy)
+    raise UsageError(f'policy: a redman.Policy, its file or run folder, or "trained", not {policy!r}')

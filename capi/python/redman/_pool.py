@@ -15,13 +15,18 @@ from . import _abi, _discovery, _png
 from ._abi import Autoreset, BaselineKind
 from ._error import ArgumentError, Error, NotFoundError, StateError, UsageError
 from ._hold import LAST, Watch
-from ._library import (Handle, assign, check, encoded, failure, filled, int32, lib, raise_kept, raised, sized)
+from ._library import (Handle, assign, check, encoded, failure, filled, int32, lib, raise_kept, raised, sized, text)
 from ._names import Hinted, keywords, nearest
 from ._options import Options, Value, read_settings, settings_of
+from ._paths import named_options
 from ._rows import Array, Borrowed, DoubleArray, FloatArray, address, given, made, shape_of
+from ._spaces import box
 
 if TYPE_CHECKING:
     import numpy.typing as npt
+
+    from ._ranks import Ranks
+    from ._recording import Recording
 
 _AUTORESET = {"samestep": Autoreset.SAME_STEP, "nextstep": Autoreset.NEXT_STEP,
               "off": Autoreset.OFF, "disabled": Autoreset.OFF}
@@ -49,7 +54,7 @@ def _struct(own: Mapping[str, Any]) -> _abi.rdm_pool_config:
     config.task = encoded(own["task"])
     assign(config, {"num_envs": own["num_envs"], "seed": own["seed"], "num_threads": own["threads"]})
     config.autoreset = _autoreset(own["autoreset"])
-    config.settings = settings_of(own["options"], _kinds(own["task"]) if own["options"] else {})
+    config.settings = settings_of(named_options(own["options"]), _kinds(own["task"]) if own["options"] else {})
     return config
 
 
@@ -58,13 +63,29 @@ def _kinds(task: str) -> dict[str, int]:
     return {key: option.kind for key, option in _discovery.task(task).options.items()}
 
 
-def memory(task: Union[str, _discovery.Task], num_envs: int = 1, options: Optional[Options] = None) -> tuple[int, int]:
+def memory(task: _discovery.TaskName, num_envs: int = 1, options: Optional[Options] = None) -> tuple[int, int]:
     """Bytes that a pool would take: by the library, exact, and by the physics engine, an estimate."""
     config = _struct({"task": _discovery.task_name(task), "num_envs": num_envs, "seed": 0, "threads": 0, "autoreset": "same_step",
                       "options": dict(options or {})})
     ours, engines = c_size_t(), c_size_t()
     check(lib.rdm_pool_config_memory(byref(config), byref(ours), byref(engines)))
     return ours.value, engines.value
+
+
+def spec(task: _discovery.TaskName, options: Optional[Options] = None) -> _abi.Spec:
+    """The sizes that a pool of these options would have; makes the task to ask it, and no world."""
+    config = _struct({"task": _discovery.task_name(task), "num_envs": 1, "seed": 0, "threads": 0, "autoreset": "same_step",
+                      "options": dict(options or {})})
+    return _abi.Spec(filled(_abi.rdm_spec, lib.rdm_pool_config_spec, byref(config)))
+
+
+def check_task(task: _discovery.TaskName, options: Optional[Options] = None) -> None:
+    """Tries what a task promises: the same bytes for the same seed, any threads and after a saved state, rows within their fields
+    and bounds, costs of 0 or more. ArgumentError names the function, the step and the entry where a promise broke first. Takes
+    seconds; for a .task file and for tasks of your own."""
+    name = _discovery.task_name(task)
+    settings = settings_of(named_options(dict(options or {})), _kinds(name) if options else {})
+    check(lib.rdm_task_check(encoded(name), settings, _abi.rdm_stop(0), None, None, 0))
 
 
 class Guard(_abi.Guard):
@@ -125,15 +146,14 @@ class Pool(Hinted):
         print(pool.episode_return, pool.cost)
 
     Rows (obs, action, reward, cost, ...) are views of one memory that reset and step write: copy what is to stay.
-    They outlive the pool. One thread at a time uses a pool; others wait. Options are a dict (`pool.options` has all).
-    task: a name, redman.task(name), or an id of Gymnasium's.
+    They outlive the pool. One thread at a time uses a pool; others wait. Options are a dict (`pool.options` has all); the
+    files of a robot (my.urdf) and an object (mug.object) stand for the names of those in them.
+    task: a name, redman.task(name), a .task file, or an id of Gymnasium's. threads: 0 or 1 the caller's only. autoreset: what a
+    step does with worlds that ended: "same_step" begins the next episode in it, "next_step" in the step that follows, "off"
+    leaves it to reset(mask=...). ranks: this pool has the worlds of one process of several (redman.Ranks).
     """
 
     _hints = {
-        "observation_space": "Pool.bounds has the lowest and highest observations; redman.gym.VectorEnv(task, num_envs) "
-                             "has spaces",
-        "action_space": "actions are [num_envs][action_dim] in [-1, 1], pool.baseline('random') draws some; "
-                        "redman.gym.VectorEnv(task, num_envs) has spaces",
         "close_all": "close()", "num_actions": "action_dim", "num_obs": "obs_dim", "dones": "terminated, truncated",
         "done": "terminated | truncated", "rewards": "reward", "infos": "cost, success, status are rows of the pool",
         "info": "cost, success, status are rows of the pool", "observations": "obs", "actions": "action",
@@ -141,12 +161,12 @@ class Pool(Hinted):
     _lost: Optional[str] = None  # why a copy has no worlds
 
     @keywords(aliases={"envs": "num_envs", "num_threads": "threads"}, options=True)
-    def __init__(self, task: Union[str, _discovery.Task], num_envs: int = 1, seed: int = 0, threads: int = 0, autoreset: object = "same_step",
-                 options: Optional[Options] = None) -> None:
+    def __init__(self, task: _discovery.TaskName, num_envs: int = 1, seed: int = 0, threads: int = 0, autoreset: object = "same_step",
+                 options: Optional[Options] = None, *, ranks: Optional[Ranks] = None) -> None:
         self._lock = threading.RLock()
         self._config: dict[str, Any] = {
             "task": _discovery.task_name(task), "num_envs": num_envs, "seed": seed, "threads": threads,
-            "autoreset": _AUTORESET_NAMES[_autoreset(autoreset)], "options": dict(options or {})}
+            "autoreset": _AUTORESET_NAMES[_autoreset(autoreset)], "options": dict(options or {}), "ranks": ranks}
         config = _struct(self._config)
         self._handle: Optional[Handle] = Handle(lib.rdm_pool_create, lib.rdm_pool_destroy, byref(config))
         self._p = self._handle.value
@@ -166,6 +186,9 @@ class Pool(Hinted):
         self._action = self._rows["action"]
         self._obs = self._rows["obs"]
         self._watch = Watch()
+        self._starts: tuple[Optional[Recording], float] = (None, 0.0)
+        if ranks is not None:
+            check(lib.rdm_pool_set_rank(self._p, ranks.rank, ranks.ranks))
 
     # ---- rows -------------------------------------------------------------------------------------------------
 
@@ -358,6 +381,16 @@ class Pool(Hinted):
         with self._lock:
             self._check(lib.rdm_pool_read_state(self._p, int32(env, "env"), bytes(state), len(state)))
 
+    def set_starts(self, recording: Optional[Recording], share: float) -> None:
+        """From the next reset on worlds begin an episode, with probability share (0 to 1), at a state of the recording, which
+        has some if it was made of a pool; None: the states of the last call with another share. Such an episode has the steps
+        that are left. All other draws are what they are without."""
+        if recording is not None and not hasattr(recording, "_handle"):
+            raise UsageError(f"recording: a redman.Recording or None, not {recording!r}")
+        with self._lock:
+            self._check(lib.rdm_pool_set_starts(self._open(), None if recording is None else recording._handle.value, share))
+            self._starts = (self._starts[0] if recording is None else recording, share)
+
     def hash(self, env: int = -1) -> str:
         """The hash of the state as the tool prints it, 16 hexadecimal digits."""
         out = c_uint64()
@@ -369,8 +402,13 @@ class Pool(Hinted):
 
     @property
     def cameras(self) -> dict[str, _discovery.Camera]:
-        """The task's cameras by name."""
-        return dict(self.task.cameras)
+        """All cameras that this pool can look by: the task's, those that ride on its robots, those of clouds."""
+        return dict(self._cameras)
+
+    @cached_property
+    def _cameras(self) -> dict[str, _discovery.Camera]:
+        return {camera.name: camera for camera in _discovery.all_of(
+            _discovery.Camera, _abi.rdm_camera_info, lib.rdm_pool_camera_at, self._open())}
 
     def render(self, env: int = 0, camera: Optional[str] = None, width: int = 320, height: int = 240,
                what: str = "rgb") -> Array:
@@ -430,6 +468,10 @@ class Pool(Hinted):
     @property
     def joints(self) -> list[_discovery.Joint]:
         """The joints of all robots of a world, the same for all worlds."""
+        return list(self._joints)
+
+    @cached_property
+    def _joints(self) -> list[_discovery.Joint]:
         return [_discovery.Joint(filled(_abi.rdm_joint_info, lib.rdm_pool_joint_at, self._open(), i))
                 for i in range(self.spec.num_joints)]
 
@@ -501,6 +543,10 @@ class Pool(Hinted):
         assert self._handle is not None
         return Sensors(self._handle, self.num_envs)
 
+    def world_error(self, env: int) -> str:
+        """What failed last in one world of a task of your own: "world 3: task press: judge: sensor lost"; "" at first."""
+        return text(lib.rdm_pool_world_error(self._open(), int32(env, "env")))
+
     @property
     def stats(self) -> _abi.PoolStats:
         """Contacts, drift and bad worlds so far."""
@@ -539,6 +585,29 @@ class Pool(Hinted):
     def costs(self) -> dict[str, _discovery.Cost]:
         """What each column of cost means."""
         return dict(self.task.costs)
+
+    @property
+    def single_observation_space(self) -> Any:
+        """The Box of one observation, with the bounds that its entries keep; of Gymnasium where that was imported."""
+        low, high = self.bounds
+        return box(low, high)
+
+    @property
+    def single_action_space(self) -> Any:
+        """The Box of one action, -1 to 1."""
+        return box(np.full(self.action_dim, -1, np.float32), np.full(self.action_dim, 1, np.float32))
+
+    @property
+    def observation_space(self) -> Any:
+        """The Box of obs [num_envs][obs_dim], as a vector environment of Gymnasium has it."""
+        one = self.single_observation_space
+        return box(*(np.tile(end, (self.num_envs, 1)) for end in (one.low, one.high)))
+
+    @property
+    def action_space(self) -> Any:
+        """The Box of action [num_envs][action_dim]: pool.step(pool.action_space.sample())."""
+        one = self.single_action_space
+        return box(*(np.tile(end, (self.num_envs, 1)) for end in (one.low, one.high)))
 
     @property
     def guards(self) -> list[Guard]:
@@ -612,7 +681,7 @@ class Pool(Hinted):
                 state = self.state()
             except StateError:  # not reset yet
                 state = None
-            return {"config": self._config, "state": state,
+            return {"config": self._config, "state": state, "starts": self._starts,
                     "rows": {name: array.copy() for name, array in self._rows.items()}}
 
     def __setstate__(self, saved: Mapping[str, Any]) -> None:
@@ -623,6 +692,8 @@ class Pool(Hinted):
                           "is imported, or in the initializer of its workers")
             self._p = self._handle = None
             return
+        if saved["starts"][0] is not None:
+            self.set_starts(*saved["starts"])
         if saved["state"] is not None:
             self.set_state(saved["state"])
         for name, array in saved["rows"].items():

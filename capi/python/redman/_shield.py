@@ -3,7 +3,6 @@ Experimental, as redman/shield.h is."""
 from __future__ import annotations
 
 import ctypes
-import os
 import threading
 from ctypes import byref, c_size_t
 from typing import TYPE_CHECKING, Any, Mapping, Optional, Union
@@ -18,15 +17,13 @@ from ._library import Handle, assign, bytes_of, check, filled, int32, lib, sized
 from ._limits import CostLimits, each_cost
 from ._names import Hinted, keywords
 from ._options import Options, Value, read_settings, settings_of
-from ._policy import Policy
+from ._policy import Backup, Policy, policy_of
 from ._pool import Pool
 from ._rows import Array, FloatArray, address, given
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-# A policy, its file or run folder, or "trained": the one that comes with the task.
-Backup = Union[Policy, str, "os.PathLike[str]"]
 # Of an environment or an evaluation: True, or a dict of options and of Shield's arguments budgets, seed and threads.
 Shielding = Union[None, bool, Mapping[str, Any]]
 NAMES = np.array([kind.name.lower() for kind in ShieldKind], object)  # of kinds
@@ -89,7 +86,7 @@ class Shield(Hinted):
         usual = [0.0, *[-1.0] * (pool.cost_dim - 1)][:pool.cost_dim]
         own = {"seed": seed, "num_threads": threads, "steps": 0 if steps is None else steps, "options": dict(options or {}),
                "budgets": each_cost(budgets, usual, list(pool.costs), "budgets")}
-        self._make(pool, own, None if policy is None else _backup(policy, pool))
+        self._make(pool, own, None if policy is None else policy_of(policy, pool.task))
 
     def _make(self, pool: Pool, own: dict[str, Any], policy: Optional[Policy]) -> None:
         self.pool = pool
@@ -114,7 +111,7 @@ class Shield(Hinted):
 
     def add(self, policy: Backup) -> None:
         """One backup more, behind the policies that there are."""
-        policy = _backup(policy, self.pool)
+        policy = policy_of(policy, self.pool.task)
         with self._lock, on_task(self.pool):
             check(lib.rdm_shield_add_policy(self._handle.value, policy._open()))
             self._policies.append(policy)
@@ -278,17 +275,6 @@ def project(normals: Any, bounds: Any, action: Any) -> FloatArray:
     out = np.empty(dim, np.float32)
     check(lib.rdm_project(arrays[0].ctypes.data, arrays[1].ctypes.data, count, dim, arrays[2].ctypes.data, out.ctypes.data))
     return out
-
-
-def _backup(policy: Backup, pool: Pool) -> Policy:
-    """A policy as it may be said."""
-    if isinstance(policy, Policy):
-        return policy
-    if isinstance(policy, str) and policy == "trained":
-        return Policy.trained(pool.task)
-    if isinstance(policy, (str, os.PathLike)):
-        return Policy.load(policy)
-    raise UsageError(f'policy: a redman.Policy, its file or run folder, or "trained", not {policy!r}')
 
 
 def shield_of(pool: Pool, wanted: Shielding, policy: Optional[Backup], steps: int = 1) -> Optional[Shield]:

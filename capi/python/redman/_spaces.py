@@ -1,6 +1,7 @@
 """Stand-ins for the classes of Gymnasium that environments are made of, for where it is not installed."""
 from __future__ import annotations
 
+import sys
 from typing import Any, Optional
 
 import numpy as np
@@ -118,3 +119,9 @@ def batch_space(space: Any, n: int) -> Any:
     if isinstance(space, Dict):
         return Dict({name: batch_space(s, n) for name, s in space.items()})
     return Box(np.stack([space.low] * n), np.stack([space.high] * n), dtype=space.dtype)
+
+
+def box(low: Any, high: Any) -> Any:
+    """A Box of float32; Gymnasium's where that was imported."""
+    spaces = sys.modules.get("gymnasium.spaces")
+    return (Box if spaces is None else spaces.Box)(low, high, dtype=np.float32)

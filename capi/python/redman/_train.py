@@ -26,9 +26,9 @@ from ._limits import CostLimits
 from ._names import Hinted, keywords, nearest
 from ._options import Given, Options, Value, shown
 from ._play import Evaluation, evaluate, play, singly, summary
-from ._policy import Origin, Policy
+from ._policy import Backup, Origin, Policy
 from ._pool import Pool
-from ._shield import Backup, Shielding
+from ._shield import Shielding
 
 # Of an evaluation during training; a policy that looks better than the best so far plays as many again
 # _CONFIRMATIONS times, and those alone say whether it is.
@@ -384,7 +384,7 @@ def _steps(steps: float) -> int:
                    "num_threads": "threads"},
           hints={"resume": "Python does not resume a run; the command `redman train --resume FOLDER` does",
                  "seeds": _OWN_SEED, "env_id": "task=...", "env": "task=..."}, options=True)
-def train(task: Union[str, _discovery.Task], algo: str = "ppo_lag", steps: float = 1e6, seed: int = 0, envs: int = 64,
+def train(task: _discovery.TaskName, algo: str = "ppo_lag", steps: float = 1e6, seed: int = 0, envs: int = 64,
           threads: int = 0, options: Optional[Options] = None, cost_limits: CostLimits = None,
           out: Union[None, str, os.PathLike[str]] = None, callback: Optional[Callback] = None, eval_every: int = 10,
           progress: bool = True, overwrite: bool = False,

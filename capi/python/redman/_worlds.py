@@ -13,10 +13,11 @@ import numpy as np
 from ._abi import ShieldKind
 from ._error import ArgumentError, UnsupportedError
 from ._names import nearest
+from ._policy import Backup
 from ._pool import Pool
 from ._rows import Array, FloatArray
 from ._senses import Senses
-from ._shield import NAMES, Backup, Shielding, shield_of
+from ._shield import NAMES, Shielding, shield_of
 
 Center = Union[None, str, Sequence[float], Array]
 Seeds = Union[None, int, Sequence[Optional[int]]]

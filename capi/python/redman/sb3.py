@@ -23,9 +23,10 @@ import numpy as np
 
 from ._defaults import Defaults, defaults
 from ._error import ArgumentError
+from ._policy import Backup
 from ._pool import Pool
 from ._rows import Array
-from ._shield import Backup, Shield, Shielding
+from ._shield import Shield, Shielding
 from ._worlds import Center, Worlds
 
 try:

@@ -1,0 +1,247 @@
+"""The importer's C ABI for ctypes. Written by generate_abi.py from redman/import.h: change the header, not this file."""
+from __future__ import annotations
+
+import enum
+from ctypes import (CDLL, POINTER, Structure, c_char_p, c_double, c_int32, c_size_t, c_uint32, c_void_p)
+
+from ._abi import Function, Rows, rdm_object_def, rdm_robot_def
+from ._record import Record
+
+
+class ImportFormat(enum.IntEnum):
+    """of a file; AUTO looks at the first element
+
+    AUTO = 0
+    URDF = 1
+    MJCF = 2
+    ROBOT = 3
+    """
+
+    AUTO = 0
+    URDF = 1
+    MJCF = 2
+    ROBOT = 3
+
+
+class NoteKind(enum.IntEnum):
+    """of a note
+
+    DROPPED = 0: in the file, not in the robot
+    CHANGED = 1: in the robot, in another form
+    GUESSED = 2: not in the file
+    CHECK = 3: found by rdm_import_check
+    """
+
+    DROPPED = 0
+    CHANGED = 1
+    GUESSED = 2
+    CHECK = 3
+
+
+class rdm_import_config(Structure):
+    """how a file is read; a .robot file takes no root, roles, density or slide_range: ARGUMENT
+
+    struct_size: bytes, set by rdm_import_config_init
+    format: RDM_IMPORT_*
+    kind: RDM_ROBOT_*, -1: guessed; default -1
+    skip_meshes: flag: meshes that cannot be read are dropped with a note, else refused
+    name: of the robot, which then has no alias; NULL: the file's
+    folder: where the names of a text's meshes begin; NULL: that of the file, or none
+    packages: folder that holds the folders of package://; NULL: searched above the file
+    root: link (body) whose subtree is taken, "world" for all of an MJCF file; NULL
+    palm: link; NULL: guessed
+    tips: links or sites, "a,b,c", one for each finger; NULL: guessed
+    mount: link or site, or "x y z roll pitch yaw" in the root frame; NULL: guessed
+    flange: link or site, "none"; NULL: guessed
+    error: [error_size] the text of a failing call that takes this config; NULL
+    error_size: bytes, terminator included; what is longer is cut
+    mend_inertia: flag: moments that break the triangle rule are raised with a note, else refused
+    density: kg/m3, of URDF links without <inertial>: what their <collision> weighs; 0: they weigh nothing;
+        above 0 with another format, where geoms say their own: ARGUMENT
+    slide_range: m to either side, of a joint that slides without an end; 0: 2 pi
+    """
+
+    struct_size: int
+    format: int
+    kind: int
+    skip_meshes: int
+    name: bytes | None
+    folder: bytes | None
+    packages: bytes | None
+    root: bytes | None
+    palm: bytes | None
+    tips: bytes | None
+    mount: bytes | None
+    flange: bytes | None
+    error: int | None
+    error_size: int
+    mend_inertia: int
+    density: float
+    slide_range: float
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("format", c_int32),
+        ("kind", c_int32),
+        ("skip_meshes", c_int32),
+        ("name", c_char_p),
+        ("folder", c_char_p),
+        ("packages", c_char_p),
+        ("root", c_char_p),
+        ("palm", c_char_p),
+        ("tips", c_char_p),
+        ("mount", c_char_p),
+        ("flange", c_char_p),
+        ("error", c_void_p),
+        ("error_size", c_int32),
+        ("mend_inertia", c_int32),
+        ("density", c_double),
+        ("slide_range", c_double),
+    ]
+
+
+class ImportNote(Record):
+    """frozen layout; texts live as long as the handle
+
+    kind: RDM_NOTE_*
+    line: of the file, from 1; 0: of none
+    text: one line, with the element and, in an included file, its name
+    """
+
+    kind: int
+    line: int
+    text: str
+
+
+class rdm_import_note(Structure):
+    """frozen layout; texts live as long as the handle
+
+    kind: RDM_NOTE_*
+    line: of the file, from 1; 0: of none
+    text: one line, with the element and, in an included file, its name
+    """
+
+    kind: int
+    line: int
+    text: bytes | None
+    _fields_ = [
+        ("kind", c_int32),
+        ("line", c_int32),
+        ("text", c_char_p),
+    ]
+
+
+STRUCTS: dict[str, type[Structure]] = {
+    "rdm_import_config": rdm_import_config,
+    "rdm_import_note": rdm_import_note,
+}
+
+# The rows that fields of structs point at.
+ROWS: dict[str, dict[str, Rows]] = {
+}
+
+FUNCTIONS: dict[str, Function] = {
+    "rdm_import_config_init": Function(
+        c_int32, {"c": POINTER(rdm_import_config), "size": c_size_t},
+        {}, True,
+        """Fills the first `size` bytes with defaults."""),
+    "rdm_import_read_file": Function(
+        c_int32, {"out": POINTER(c_void_p), "path": c_char_p, "c": POINTER(rdm_import_config)},
+        {}, True,
+        """Reads a file; c may be NULL for the defaults. NOT_FOUND, IO; FORMAT: malformed, with its line;
+        ARGUMENT, RANGE: a robot that cannot be, with line and element; UNSUPPORTED: an element that
+        would change the robot and is not read. What is no regular file is IO and never waited for. A
+        file and all that it includes or names cost at most 4096 files, 16 MB of text, 512 MB of meshes
+        (64 MB each), 250,000 elements, 400,000 attributes and 10 million steps of work: RANGE beyond.
+        """),
+    "rdm_import_read": Function(
+        c_int32, {"out": POINTER(c_void_p), "bytes": c_void_p, "size": c_size_t, "c": POINTER(rdm_import_config)},
+        {}, True,
+        """The same for bytes [size] of a file. Without config.folder it has neither meshes nor includes."""),
+    "rdm_import_create_robot": Function(
+        c_int32, {"out": POINTER(c_void_p), "robot": c_int32},
+        {}, True,
+        """A robot that is there, the library's own too, as a handle that can be written."""),
+    "rdm_import_destroy": Function(
+        None, {"i": c_void_p},
+        {}, True,
+        """NULL is fine"""),
+    "rdm_import_get_robot_def": Function(
+        c_int32, {"i": c_void_p, "io": POINTER(rdm_robot_def)},
+        {}, True,
+        """What rdm_robot_create takes; texts and arrays live as long as the handle."""),
+    "rdm_import_note_count": Function(
+        c_int32, {"i": c_void_p},
+        {}, True,
+        """0 for what is no handle"""),
+    "rdm_import_note_at": Function(
+        c_int32, {"i": c_void_p, "n": c_int32, "out": POINTER(rdm_import_note)},
+        {}, True,
+        """n < the count"""),
+    "rdm_import_check": Function(
+        c_int32, {"i": c_void_p},
+        {}, True,
+        """Tries the robot alone and adds notes of kind CHECK: shapes that touch at home or while one joint
+        sweeps its range, joints that do not come to rest at home or do not reach the ends of their range
+        within 2 s (weightless, own drives, no contacts). Fails as rdm_robot_create would.
+        """),
+    "rdm_import_write_robot": Function(
+        c_int32, {"def": POINTER(rdm_robot_def), "text": c_void_p, "capacity": c_size_t, "size": c_void_p},
+        {}, True,
+        """The robot as a .robot file, text [capacity]; read back it is the same to the last bit. ARGUMENT:
+        a row names none.
+        """),
+    "rdm_import_read_task_file": Function(
+        c_int32, {"task": c_void_p, "path": c_char_p},
+        {}, True,
+        """A task out of a .task file: its scene, observation, rewards and costs as text (TOML, 1:1 with
+        rdm_task_def and what rdm_scene_* takes, and lists of terms in the place of functions).
+        Registered under the name that it says; *task is for rdm_task_at and rdm_task_destroy. A world
+        with its default options was made, reset and stepped before. The codes of
+        rdm_import_read_file.
+        """),
+    "rdm_import_read_task": Function(
+        c_int32, {"task": c_void_p, "bytes": c_void_p, "size": c_size_t, "file": c_char_p},
+        {}, True,
+        """The same for bytes [size]; `file` begins the texts of errors, NULL: nothing does."""),
+    "rdm_import_read_object_file": Function(
+        c_int32, {"out": POINTER(c_void_p), "path": c_char_p},
+        {}, True,
+        """Objects: an .object file (TOML, 1:1 with rdm_object_def; rows [[shape]]) as a handle for the call
+        below, or bytes [size] of one, or an object that is there. FORMAT with the line; ARGUMENT, RANGE
+        as rdm_object_create.
+        """),
+    "rdm_import_read_object": Function(
+        c_int32, {"out": POINTER(c_void_p), "bytes": c_void_p, "size": c_size_t},
+        {}, True,
+        """Objects: an .object file (TOML, 1:1 with rdm_object_def; rows [[shape]]) as a handle for the call
+        below, or bytes [size] of one, or an object that is there. FORMAT with the line; ARGUMENT, RANGE
+        as rdm_object_create.
+        """),
+    "rdm_import_create_object": Function(
+        c_int32, {"out": POINTER(c_void_p), "object": c_int32},
+        {}, True,
+        """Objects: an .object file (TOML, 1:1 with rdm_object_def; rows [[shape]]) as a handle for the call
+        below, or bytes [size] of one, or an object that is there. FORMAT with the line; ARGUMENT, RANGE
+        as rdm_object_create.
+        """),
+    "rdm_import_get_object_def": Function(
+        c_int32, {"i": c_void_p, "io": POINTER(rdm_object_def)},
+        {}, True,
+        """What rdm_object_create takes; texts and arrays live as long as the handle."""),
+    "rdm_import_write_object": Function(
+        c_int32, {"def": POINTER(rdm_object_def), "text": c_void_p, "capacity": c_size_t, "size": c_void_p},
+        {}, True,
+        """The object as an .object file, text [capacity]; read back it is the same to the last bit."""),
+    "rdm_import_error": Function(
+        c_char_p, {},
+        {}, True,
+        """This thread's last failure in this library, one line; valid until its next failing call."""),
+}
+
+
+def declare(library: CDLL) -> None:
+    """Gives each function of the loaded library its types."""
+    for name, function in FUNCTIONS.items():
+        symbol = getattr(library, name)
+        symbol.restype = function.result
+        symbol.argtypes = list(function.arguments.values())

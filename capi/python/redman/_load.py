@@ -1,0 +1,48 @@
+"""load: what a file or a folder holds, whatever it is."""
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any, Callable, Union
+
+from ._curve import curve
+from ._error import FormatError
+from ._files import must_exist
+from ._importer import LOADERS
+from ._map import Map
+from ._paths import ENDINGS
+from ._policy import Policy
+from ._recording import Recording
+
+
+def _map(path: Union[str, os.PathLike[str]]) -> Map:
+    out = Map()
+    out.load_file(path)
+    return out
+
+
+_LOADERS: dict[str, Callable[[Any], Any]] = {
+    ".rdm": Policy.load, ".npz": Recording.load, ".ot": _map, ".bt": _map,
+    **{ending: LOADERS[kind] for kind in ENDINGS for ending in ENDINGS[kind]}}
+
+
+def load(path: Union[str, os.PathLike[str]]) -> Any:
+    """What a file or a folder holds: a Policy of a policy file (.rdm) or a run folder, a Recording (.npz), a Robot (.urdf, .xml,
+    .mjcf, .robot), an Object (.object), a Task (.task), a Map (.ot, .bt), a Curve (progress.csv).
+
+    Agent.load and Agent.read_checkpoint read what an agent has saved: it takes an agent of the same configuration.
+    """
+    must_exist(path, "load")
+    file = Path(path)
+    if file.is_dir():
+        return Policy.load(file)
+    if file.name == "progress.csv":
+        return curve(file.parent)
+    with open(file, "rb") as opened:
+        head = opened.read(8)
+    if head in (b"RDMAGENT", b"RDMCHECK"):
+        raise FormatError(f"load {file}: it is what an agent has saved: agent.load(path), or agent.read_checkpoint(path, pool)")
+    ending = file.suffix.lower()
+    if ending not in _LOADERS:
+        raise FormatError(f"load {file}: it ends in none of {', '.join(_LOADERS)}, and is no run folder")
+    return _LOADERS[ending](path)

@@ -1,0 +1,22 @@
+"""make and make_vec: environments by Gymnasium's words."""
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from ._discovery import TaskName, task_name
+
+if TYPE_CHECKING:
+    from .gym import Env, VectorEnv
+
+
+def make(task: TaskName, **settings: Any) -> Env:
+    """One environment of Gymnasium's form, redman.gym.Env(task, ...), with or without Gymnasium: reset gives (obs, info), step five
+    values."""
+    from .gym import Env
+    return Env(task_name(task), **settings)
+
+
+def make_vec(task: TaskName, num_envs: int = 1, **settings: Any) -> VectorEnv:
+    """A vector environment of Gymnasium's form, redman.gym.VectorEnv(task, num_envs, ...)."""
+    from .gym import VectorEnv
+    return VectorEnv(task_name(task), num_envs, **settings)

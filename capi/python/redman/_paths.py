@@ -1,0 +1,27 @@
+"""Files where a name is meant: a task, a robot or an object that a file describes stands for the name that it has."""
+from __future__ import annotations
+
+import os
+from typing import Any, Mapping, Union
+
+ENDINGS = {"task": (".task",), "robot": (".urdf", ".xml", ".mjcf", ".robot"), "object": (".object",)}
+
+
+def is_file(kind: str, name: Any) -> bool:
+    """Whether a name of a task, a robot or an object is a file of one."""
+    return isinstance(name, (str, os.PathLike)) and str(name).lower().endswith(ENDINGS[kind])
+
+
+def named(kind: str, name: Union[str, os.PathLike[str]]) -> str:
+    """The name; that of what a file describes, which is loaded unless it was."""
+    if not is_file(kind, name):
+        return os.fspath(name)
+    from . import _importer
+    called: str = _importer.LOADERS[kind](name).name
+    return called
+
+
+def named_options(options: Mapping[str, Any]) -> dict[str, Any]:
+    """Options whose files of robots and objects are the names of these."""
+    return {key: next((named(kind, value) for kind in ("robot", "object") if is_file(kind, value)), value)
+            for key, value in options.items()}

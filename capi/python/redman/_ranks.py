@@ -1,0 +1,70 @@
+"""Ranks: one learner of several processes. Experimental, as redman/ranks.h is."""
+from __future__ import annotations
+
+import ctypes
+from typing import Any, Callable, Optional, Sequence
+
+from . import _abi
+from ._callbacks import c_function
+from ._error import ArgumentError, UsageError
+from ._library import assign, sized
+
+Gather = Callable[[bytes], Sequence[bytes]]
+Swap = Callable[[int, bytes], bytes]
+
+
+class Ranks:
+    """Which of several processes this one is, and how they exchange messages. Together they are one learner, whose bytes are
+    those of one process with all worlds and the same option blocks.
+
+        ranks = redman.Ranks(comm.rank, comm.size, comm.allgather)          # comm: of mpi4py
+        pool = redman.Pool(task, 16, ranks=ranks)                           # 16 of 16 * comm.size worlds
+        agent = redman.Agent(pool, options={"blocks": 16}, ranks=ranks)
+        pool.reset()
+        while True:
+            epoch = agent.rollout(pool)                                     # the same on each rank
+
+    gather(message) gives the messages of all ranks, in their order; messages are equally long bytes, and it blocks until all have
+    come. swap(partner, message), which may be left out, sends a message to one rank and gives that rank's. What one of them
+    raises ends the call with CancelledError. All ranks make the same calls of rollout, act, record, update and save.
+    """
+
+    def __init__(self, rank: int, ranks: int, gather: Optional[Gather] = None, swap: Optional[Swap] = None) -> None:
+        if not 0 <= rank < ranks:
+            raise ArgumentError(f"rank: {rank} is not in 0 to {ranks - 1}")
+        if gather is None and ranks > 1:
+            raise UsageError("gather: how messages of several ranks are exchanged, as comm.allgather of mpi4py")
+        self.rank, self.ranks = rank, ranks
+        self._struct = sized(_abi.rdm_ranks)
+        assign(self._struct, {"rank": rank, "ranks": ranks})
+        if gather is not None:
+            self._gather = self._struct.gather = c_function("rdm_ranks.gather", _gathering(gather, ranks))
+        if swap is not None:
+            self._swap = self._struct.swap = c_function("rdm_ranks.swap", _swapping(swap))
+
+    def __reduce__(self) -> Any:
+        raise UsageError("redman.Ranks belong to one process: make them in each")
+
+    def __repr__(self) -> str:
+        return f"<Ranks: {self.rank} of {self.ranks}>"
+
+
+def _gathering(gather: Gather, ranks: int) -> Callable[..., int]:
+    def hook(_: Any, mine: int, size: int, every: int) -> int:
+        messages = gather(ctypes.string_at(mine, size))
+        lengths = [len(message) for message in messages]
+        if lengths != [size] * ranks:
+            raise ArgumentError(f"gather: messages of {lengths} bytes, not {ranks} of {size}")
+        ctypes.memmove(every, b"".join(messages), size * ranks)
+        return 0
+    return hook
+
+
+def _swapping(swap: Swap) -> Callable[..., int]:
+    def hook(_: Any, partner: int, mine: int, size: int, theirs: int) -> int:
+        message = swap(partner, ctypes.string_at(mine, size))
+        if len(message) != size:
+            raise ArgumentError(f"swap: a message of {len(message)} bytes, not {size}")
+        ctypes.memmove(theirs, bytes(message), size)
+        return 0
+    return hook

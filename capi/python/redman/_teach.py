@@ -1,0 +1,136 @@
+"""What an agent takes over without acting: recordings, policies, labels of points; and what its critics say. Experimental, as
+redman/record.h, sense.h and plan.h are."""
+from __future__ import annotations
+
+import ctypes
+from ctypes import byref
+from typing import Any, Callable, Optional
+
+import numpy as np
+
+from . import _abi
+from ._error import ArgumentError, UsageError
+from ._library import assign, check, lib, sized
+from ._policy import Backup, policy_of
+from ._recording import Recording
+from ._rows import DoubleArray, FloatArray, clouds, given
+
+
+class CloneReport(_abi.CloneReport):
+    """What Agent.clone did. epochs: that were run; best_epoch: from 1, whose weights were kept; stopped: whether it ended early;
+    train_rows, validation_rows: counts; train_loss, validation_loss: of the best epoch, mean squared error of an entry, nan
+    without validation; train_losses, validation_losses: [epochs] the same of each epoch."""
+
+    stopped: bool
+    train_losses: tuple[float, ...]
+    validation_losses: tuple[float, ...]
+
+    def __init__(self, struct: _abi.rdm_clone_report, train: DoubleArray, validation: DoubleArray) -> None:
+        super().__init__(struct)
+        held = struct.validation_rows > 0
+        self.__dict__.update(
+            stopped=bool(struct.stopped), validation_loss=struct.validation_loss if held else float("nan"),
+            train_losses=tuple(train[:struct.epochs].tolist()),
+            validation_losses=tuple(validation[:struct.epochs].tolist()) if held else ())
+
+
+class Taught:
+    """The part of an Agent that is here."""
+
+    _a: Optional[int]
+    _lock: Any
+    _lengths: dict[str, int]
+    num_envs: int
+    obs_dim: int
+    _check: Callable[[int], None]
+    _open: Callable[[], int]
+    _run: Callable[..., None]
+    _config: dict[str, Any]
+    _recording: Optional[Recording]
+
+    def clone(self, recording: Recording, *, epochs: int = 30, batch_rows: int = 512, patience: int = 5,
+              learning_rate: float = 1e-3, learning_rate_end: float = 1e-5, validation: float = 0.1, action_std: float = 0.0,
+              seed: int = 0, feed_normalizer: bool = True) -> CloneReport:
+        """Behaviour cloning: fits the actor's mean to the labels of a recording; critics and multipliers stay.
+
+        epochs: passes over the rows, at most; patience: epochs without a better validation loss that end it, 0: never; the
+        learning rate falls in a line to learning_rate_end; validation: the share of rows, in whole episodes, that are not learned
+        from; action_std: the deviation of actions afterwards, 0: as it is; feed_normalizer: the statistics of observations
+        become the recording's first. Ctrl-C and cancel leave the agent as it was.
+        """
+        _is_recording(recording)
+        how = sized(_abi.rdm_clone_config)
+        check(lib.rdm_clone_config_init(byref(how), ctypes.sizeof(how)))
+        assign(how, {"epochs": epochs, "batch_rows": batch_rows, "patience": patience, "learning_rate": learning_rate,
+                     "learning_rate_end": learning_rate_end, "validation": validation, "action_std": action_std, "seed": seed,
+                     "feed_normalizer": int(feed_normalizer)})
+        losses = [np.zeros(max(min(epochs, 100_000), 1)) for _ in range(2)]
+        how.capacity = len(losses[0])
+        how.train_loss, how.validation_loss = (loss.ctypes.data for loss in losses)
+        report = sized(_abi.rdm_clone_report)
+        with self._lock, recording._lock:
+            self._run(lib.rdm_agent_clone, recording._handle.value, byref(how), byref(report))
+        return CloneReport(report, *losses)
+
+    @property
+    def recording(self) -> Optional[Recording]:
+        """The rows that options imitation and imitation_decay hold the actor near, None: none. Assignment copies obs and label;
+        a state that was saved with some loads only beside the same ones."""
+        return self._recording
+
+    @recording.setter
+    def recording(self, recording: Optional[Recording]) -> None:
+        if recording is not None:
+            _is_recording(recording)
+        with self._lock:
+            self._check(lib.rdm_agent_set_recording(self._a, None if recording is None else recording._handle.value))
+            self._recording = recording
+
+    def warm_start(self, policy: Backup, samples: float = 1e6) -> None:
+        """The actor, its deviation and the statistics of observations become those of a policy: a Policy, its file or run
+        folder, or "trained". The statistics count for so many observations, 2 to 1e12. ArgumentError where networks differ:
+        the text says in what, and nothing changes."""
+        taken = policy_of(policy, self._config["task"])
+        with self._lock:
+            self._check(lib.rdm_agent_set_policy(self._a, taken._open(), float(samples)))
+
+    def values(self, obs: Any) -> tuple[FloatArray, FloatArray]:
+        """What the critics say of observations [n][obs_dim], or of one [obs_dim]: the discounted sum of rewards to come [n], and
+        that of each cost [n][cost_dim], 0 for a cost that the agent does not limit. UnsupportedError with options
+        normalize_reward or normalize_cost, which leave critics no unit."""
+        seen = np.asarray(obs)
+        if seen.ndim not in (1, 2) or seen.shape[-1] != self.obs_dim:
+            raise ArgumentError(f"obs: shape {seen.shape} does not fit (rows, {self.obs_dim})")
+        rows = 1 if seen.ndim == 1 else len(seen)
+        table, lengths = _abi.FUNCTIONS["rdm_agent_get_values"].rows, {"rows": rows, "obs_dim": self.obs_dim}
+        value, cost = np.empty(rows, np.float32), np.zeros((rows, _abi.RDM_MAX_COSTS), np.float32)
+        if rows:
+            array = given(seen, table["obs"], lengths, "obs")
+            with self._lock:
+                self._check(lib.rdm_agent_get_values(self._a, array.ctypes.data, rows, value.ctypes.data, cost.ctypes.data))
+        cost = cost[:, :self._lengths["cost_dim"]]
+        return (value, cost) if seen.ndim == 2 else (value[0], cost[0])
+
+    def pretrain(self, points: Any, label: Any, num_labels: int, *, point_class: Any = None, point_color: Any = None,
+                 epochs: int = 20, batch_rows: int = 16, learning_rate: float = 1e-3, validation: float = 0.1,
+                 seed: int = 0) -> _abi.PretrainReport:
+        """The encoder learns to tell the points of clouds [rows][num_points][3] apart by label [rows][num_points], each below
+        num_labels; nothing else changes. epochs: passes over the clouds. StateError without option encoder."""
+        rows = len(points)
+        cloud, kept = clouds(points, point_class, point_color, rows)
+        named = given(label, _abi.FUNCTIONS["rdm_agent_pretrain"].rows["label"],
+                      {"rows": rows, "num_points": cloud.num_points}, "label")
+        how = sized(_abi.rdm_pretrain_config)
+        check(lib.rdm_pretrain_config_init(byref(how), ctypes.sizeof(how)))
+        assign(how, {"num_labels": num_labels, "epochs": epochs, "batch_rows": batch_rows, "learning_rate": learning_rate,
+                     "validation": validation, "seed": seed})
+        report = sized(_abi.rdm_pretrain_report)
+        with self._lock:
+            self._run(lib.rdm_agent_pretrain, byref(cloud), named.ctypes.data, rows, byref(how), byref(report))
+        del kept
+        return _abi.PretrainReport(report)
+
+
+def _is_recording(recording: Any) -> None:
+    if not isinstance(recording, Recording):
+        raise UsageError(f"recording: a redman.Recording, not {recording!r}; redman.Recording.load(path) reads a file")
