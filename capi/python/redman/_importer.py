@@ -11,7 +11,7 @@ from typing import Any, Callable, Optional, TypeVar, Union
 from . import _abi, _import_abi
 from ._discovery import Task, task_at
 from ._error import ArgumentError, Error, UnsupportedError, error_of
-from ._files import must_exist, write_whole
+from ._files import must_exist
 from ._library import Handle, assign, encoded, lib, sized, text
 from ._object import Object, created as object_created, object_at
 from ._robot import Note, Robot, created as robot_created, robot_at
@@ -170,20 +170,20 @@ def load_task(path: Source) -> Task:
 LOADERS: dict[str, Callable[..., Any]] = {"robot": load_robot, "object": load_object, "task": load_task}
 
 
-def write_robot(number: int, path: Union[str, os.PathLike[str]]) -> None:
+def robot_text(number: int) -> bytes:
     """A robot as a .robot file."""
     read = _read("rdm_import_create_robot", number)
     struct = sized(_abi.rdm_robot_def)
     _check(importer().rdm_import_get_robot_def(read.value, byref(struct)))
-    write_whole(path, _text_of(importer().rdm_import_write_robot, struct), "robot")
+    return _text_of(importer().rdm_import_write_robot, struct)
 
 
-def write_object(number: int, path: Union[str, os.PathLike[str]]) -> None:
+def object_text(number: int) -> bytes:
     """An object as an .object file."""
     read = _read("rdm_import_create_object", number)
     struct = sized(_abi.rdm_object_def)
     _check(importer().rdm_import_get_object_def(read.value, byref(struct)))
-    write_whole(path, _text_of(importer().rdm_import_write_object, struct), "object")
+    return _text_of(importer().rdm_import_write_object, struct)
 
 
 def _text_of(call: Callable[..., int], struct: ctypes.Structure) -> bytes:

@@ -9,6 +9,7 @@ from typing import Any, Mapping, Union
 
 from . import _abi, _discovery
 from ._definition import fill, numbers, plain
+from ._files import write_whole
 from ._library import check, filled, lib, sized
 
 
@@ -60,8 +61,8 @@ class Object(_abi.ObjectInfo):
 
     def save(self, path: Union[str, os.PathLike[str]]) -> None:
         """Writes an .object file, which load_object reads back the same to the last bit."""
-        from ._importer import write_object
-        write_object(self.number, path)
+        from ._importer import object_text
+        write_whole(path, object_text(self.number), "object")
 
     def remove(self) -> None:
         """Takes an object of your own, or of a file, out of this process; pools that have it keep it."""

@@ -11,6 +11,7 @@ import numpy as np
 
 from . import _png, stats
 from ._actor import worlds_of
+from ._discovery import TaskName, task_name
 from ._error import ArgumentError, Error, NotFoundError
 from ._names import nearest
 from ._options import Options
@@ -355,7 +356,7 @@ def _folded(key: str) -> str:
     return key.lower().replace("-", "_")
 
 
-def evaluate(player: Player, task: Optional[str] = None, episodes: int = 100, num_envs: int = 16, seed: int = 0,
+def evaluate(player: Player, task: Optional[TaskName] = None, episodes: int = 100, num_envs: int = 16, seed: int = 0,
              threads: int = 0, options: Optional[Options] = None,
              cost_limits: Optional[Sequence[Optional[float]]] = None, magnitudes: Optional[bool] = None, *,
              action_repeat: Union[None, int, str] = None, center: Center = None, shield: Shielding = None,
@@ -379,6 +380,7 @@ def evaluate(player: Player, task: Optional[str] = None, episodes: int = 100, nu
     """
     if episodes < 1:
         raise ArgumentError("episodes: 1 or more")
+    task = None if task is None else task_name(task)
     judged = _judged(player, task)
     origin = judged.origin
     known = judged.task or (origin.task if origin else None)

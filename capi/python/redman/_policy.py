@@ -43,15 +43,20 @@ class Origin:
         """Of a run folder's config.json; None where there is none."""
         try:
             said = json.loads(read_bytes(folder / "config.json", MOST_JSON))
+            own = {member: said[member] for member in ("task", "task_file", "robot_files", "object_files") if member in said}
             options = dict(pair.split("=", 1) for pair in said["set"])
             limits = {str(name): float(limit) for name, limit in said["cost_limits"].items()}
-            return cls(str(said["task"]), options, limits, said["algo_cfgs"].get("cost_signal") == "raw", str(folder))
+            magnitudes = said["algo_cfgs"].get("cost_signal") == "raw"
         except (FileNotFoundError, NotADirectoryError):
             return None
         except OSError as error:
             raise FileError(f"run {folder}: config.json: {error.strerror}") from None
         except (ValueError, KeyError, TypeError, AttributeError) as error:
             raise FormatError(f"run {folder}: config.json is not a run's: {error!r}") from None
+        if len(own) > 1:
+            from ._own_files import load_kept
+            load_kept(own, f"run {folder}")
+        return cls(own["task"], options, limits, magnitudes, str(folder))
 
 
 # A policy, its file or run folder, or "trained": the one that comes with the task.
@@ -89,7 +94,7 @@ class Policy(Hinted):
     @classmethod
     def load(cls, source: Union[str, os.PathLike[str], bytes, bytearray, memoryview]) -> Policy:
         """Of a policy file, of a run folder's policy.rdm, or of the bytes of a file. A file in a run folder brings what the run
-        knows (origin)."""
+        knows (origin); a task, robots and objects of its own are loaded as the folder has them."""
         if isinstance(source, (bytes, bytearray, memoryview)):
             return cls(bytes(source))
         path = Path(source)

@@ -12,6 +12,7 @@ import numpy as np
 from . import _abi, _discovery
 from ._definition import fill, plain, pose_of
 from ._error import UsageError
+from ._files import write_whole
 from ._import_abi import ImportNote, NoteKind
 from ._library import check, encoded, filled, lib, sized
 from ._paths import named
@@ -42,6 +43,7 @@ class Poses(NamedTuple):
 
 
 _notes: dict[int, tuple[Note, ...]] = {}  # of robots that came from a file
+added: set[int] = set()  # numbers of those that are not the library's own
 
 
 class Robot(_abi.Robot):
@@ -133,6 +135,7 @@ class Robot(_abi.Robot):
         stands off by adapter (m); left: its mirror image."""
         out = c_int32()
         check(lib.rdm_robot_create_mounted(byref(out), encoded(name), self.number, robot(hand).number, yaw, adapter, int(left)))
+        added.add(out.value)
         return robot_at(out.value)
 
     @property
@@ -142,8 +145,8 @@ class Robot(_abi.Robot):
 
     def save(self, path: Union[str, os.PathLike[str]]) -> None:
         """Writes a .robot file, which load_robot reads back the same to the last bit."""
-        from ._importer import write_robot
-        write_robot(self.number, path)
+        from ._importer import robot_text
+        write_whole(path, robot_text(self.number), "robot")
 
     def remove(self) -> None:
         """Takes a robot of your own, or of a file, out of this process; pools that have it keep it."""
@@ -161,6 +164,7 @@ def created(struct: _abi.rdm_robot_def, notes: tuple[Note, ...] = ()) -> Robot:
     """The robot of a struct."""
     out = c_int32()
     check(lib.rdm_robot_create(byref(out), byref(struct)))
+    added.add(out.value)
     if notes:
         _notes[out.value] = notes
     return robot_at(out.value)

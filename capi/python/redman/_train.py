@@ -16,7 +16,7 @@ from typing import Any, Callable, Iterator, Mapping, NamedTuple, Optional, Union
 
 import numpy as np
 
-from . import _abi, _discovery, _events
+from . import _abi, _discovery, _events, _own_files as own_files
 from ._agent import Agent, Epoch
 from ._curve import Curve
 from ._error import ArgumentError, FileError, NotFoundError, StateError, UnsupportedError, UsageError
@@ -25,6 +25,7 @@ from ._library import check, encoded, lib, whole
 from ._limits import CostLimits
 from ._names import Hinted, keywords, nearest
 from ._options import Given, Options, Value, shown
+from ._paths import is_file, named_options
 from ._play import Evaluation, evaluate, play, singly, summary
 from ._policy import Backup, Origin, Policy
 from ._pool import Pool
@@ -349,7 +350,8 @@ def _config(run: Run, pool: Pool, of_task: dict[str, Value], of_algo: dict[str, 
                       "steps_per_epoch": per_epoch},
         "env_cfgs": {key: shown(key, value) for key, value in pool.options.items()},
         "obs_dim": pool.obs_dim, "action_dim": pool.action_dim, "layout_hash": f"{pool.spec.layout_hash:016x}",
-        "build": dict(vars(_discovery.build())), **({} if task_text is None else {"task_file": task_text})}
+        "build": dict(vars(_discovery.build())), **({} if task_text is None else {"task_file": task_text}),
+        **own_files.kept(run.options)}
 
 
 def _note(e: Epoch, folder: _Folder, seconds: float, tested: tuple[float, float], best: Optional[_Score],
@@ -398,10 +400,12 @@ def train(task: _discovery.TaskName, algo: str = "ppo_lag", steps: float = 1e6, 
     at once.
 
     out makes a run folder, which `redman eval`, `plot`, `report` and `train --resume` take, with the curve for TensorBoard;
-    Python itself does not resume a run. task_file: the .task file that the task was registered from, whose text is kept
-    there, so that the tool knows the task.
+    Python itself does not resume a run. task may be a .task file, and options may have files of robots and objects: their texts
+    are kept there, so that the folder is whole. task_file: the .task file that a task was registered from otherwise.
     """
     goal = _steps(steps)
+    if task_file is None and is_file("task", task):
+        task_file = task  # type: ignore[assignment]
     task = _discovery.task_name(task)
     whole(eval_every, "eval_every", 1, (1 << 31) - 1)
     if not hasattr(seed, "__index__"):
@@ -415,6 +419,7 @@ def train(task: _discovery.TaskName, algo: str = "ppo_lag", steps: float = 1e6, 
         limit = float(asked.pop(key))  # type: ignore[arg-type]
         cost_limits = limit if cost_limits is None else cost_limits
     of_task, of_algo = split_options(task, algo, asked)
+    of_task = named_options(of_task)
     pool = Pool(task, envs, seed, threads, options=of_task)
     agent = Agent(pool, algo, seed, threads, of_algo, cost_limits)
     magnitudes = learns_magnitudes(agent)
