@@ -263,7 +263,8 @@ class Refused(unittest.TestCase):
         shield = redman.Shield(pool)
         for make, kind, words in (
                 (lambda: redman.Shield(pool, options={"blok": 3}), redman.NotFoundError, "block"),
-                (lambda: redman.Shield(pool, block=3), redman.UsageError, r"options=\{'block': 3\}"),
+                (lambda: redman.Shield(pool, blok=3), redman.UsageError, "there is no such argument"),
+                (lambda: redman.Shield(pool, block=3, options={"block": 4}), redman.UsageError, "option block is given twice"),
                 (lambda: redman.Shield(pool, options={"noise": 3}), redman.RangeError, "noise"),
                 (lambda: redman.Shield(pool, steps=2000), redman.RangeError, "steps"),
                 (lambda: redman.Shield("bandit"), redman.UsageError, "shield=True"),

@@ -47,8 +47,8 @@ from ._actor import Actor
 from ._agent import Agent, Epoch
 from ._callbacks import c_function
 from ._curve import Curve, Curves, curve
-from ._discovery import (Algo, Camera, Cost, Field, Joint, Option, Shape, Task, algo, algos, build, features, shield_options,
-                         task, tasks)
+from ._discovery import (Algo, Camera, Cost, Field, Joint, Option, Shape, Task, algo, algos, build, features, planner_options,
+                         shield_options, task, tasks)
 from ._error import (AllocationError, ArgumentError, CancelledError, Error, FileError, FormatError, InternalError,
                      MissingFileError, NotFoundError, PhysicsError, RangeError, StateError, UnsupportedError, UsageError,
                      VersionError)
@@ -62,7 +62,7 @@ from ._map import Map, sample_furthest
 from ._names import moved
 from ._object import Object, objects
 from ._options import Options
-from ._planner import PlanInfo, Planner, planner_options
+from ._planner import PlanInfo, Planner
 from ._play import Evaluation, Player, evaluate
 from ._policy import Origin, Policy
 from ._pool import Guard, Pool, Sensors, check_task, memory, spec

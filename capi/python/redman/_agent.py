@@ -4,9 +4,11 @@ from __future__ import annotations
 import _thread
 import contextlib
 import ctypes
+import math
 import os
 import threading
 import time
+import weakref
 from ctypes import byref, c_size_t
 from queue import SimpleQueue
 from typing import (TYPE_CHECKING, Any, Callable, Dict, Iterable, Iterator, Mapping, MutableMapping, Optional,
@@ -101,8 +103,7 @@ class Agent(Taught, Hinted):
     """
 
     _hints = {
-        "learn": "agent.rollout(pool) is one epoch, redman.train(task, steps=...) a whole run",
-        "train": "agent.rollout(pool) is one epoch, redman.train(task, steps=...) a whole run",
+        "train": "agent.learn(steps), agent.rollout(pool) for one epoch; redman.train(task, steps=...) is a whole run",
         "predict": "agent.act(obs, 'mean'), or agent.policy().act(obs)",
         "evaluate": "redman.evaluate(agent.policy(), task)", "parameters": "agent.tensors",
         "state_dict": "agent.tensors has the parameters by name, agent.save() all of its state",
@@ -134,6 +135,7 @@ class Agent(Taught, Hinted):
         own["cost_names"] = list(columns)
         own["cost_limits"] = each_cost(cost_limits, own["cost_limits"], columns, "cost_limits")
         self._lock = threading.RLock()
+        self._pool = None if pool is None else weakref.ref(pool)
         self._make(own)
 
     def _make(self, config: dict[str, Any]) -> None:
@@ -265,6 +267,29 @@ class Agent(Taught, Hinted):
                 stack.enter_context(self._shield._lock)
             self._run(lib.rdm_agent_rollout, pool._open(), byref(epoch))
         return self._epoch(epoch)
+
+    @keywords(aliases={"total_timesteps": "steps", "total_steps": "steps", "env": "pool"})
+    def learn(self, steps: float, pool: Optional[Pool] = None, callback: Optional[Callable[[Epoch], Any]] = None) -> Epoch:
+        """Rollouts until so many control steps of all worlds more are taken, rounded up to whole epochs; the last epoch.
+
+        pool: None: the one that the agent was made for, as long as it lives; it is reset if it was not. callback(epoch) is called
+        after each; a true answer ends it. redman.train keeps the best policy and a folder too."""
+        if pool is None:
+            pool = None if self._pool is None else self._pool()
+        if pool is None:
+            raise UsageError("learn: on which worlds? agent.learn(steps, pool)")
+        try:
+            pool.hash()
+        except StateError:  # not reset yet
+            pool.reset()
+        options = self.options
+        if not steps > 0:
+            raise ArgumentError(f"steps: {steps} is not above 0")
+        for _ in range(math.ceil(steps / (self.num_envs * int(options["horizon"]) * int(options["action_repeat"])))):
+            epoch = self.rollout(pool)
+            if callback and callback(epoch):
+                break
+        return epoch
 
     def cancel(self) -> None:
         """From any thread: the running or next rollout or update raises CancelledError."""
@@ -434,7 +459,7 @@ class Agent(Taught, Hinted):
 
     def __setstate__(self, saved: Mapping[str, Any]) -> None:
         if not hasattr(self, "_lock"):
-            self._lock = threading.RLock()
+            self._lock, self._pool = threading.RLock(), None
         self._make(saved["config"])
         self.recording = saved["recording"]
         self.load(saved["state"])

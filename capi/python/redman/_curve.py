@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, Dict, Iterable, Mapping, Optional, Sequen
 
 import numpy as np
 
-from ._error import FormatError, MissingFileError
+from ._error import FormatError, MissingFileError, UnsupportedError
 from ._files import MOST_JSON, MOST_TEXT, read_bytes
 from ._names import Hinted
 
@@ -35,6 +35,10 @@ class _Drawn:
     def _repr_html_(self) -> str:
         return as_image(self._repr_svg_())
 
+    def plot(self) -> _Drawn:
+        """Itself, which draws itself as the last line of a cell of a notebook; save writes it elsewhere."""
+        return self
+
     def save(self, path: Union[str, os.PathLike[str]]) -> None:
         """Writes the picture as an SVG file."""
         Path(path).write_text(self._repr_svg_(), encoding="utf-8")
@@ -48,7 +52,7 @@ class Curve(_Drawn, Hinted, Dict[str, Column]):
     pandas.DataFrame(curve) has a row for each epoch too, as to_pandas() has.
     """
 
-    _hints = {"plot": _DRAWS, "show": _DRAWS, "draw": _DRAWS, "df": "to_pandas()", "to_df": "to_pandas()",
+    _hints = {"show": _DRAWS, "draw": _DRAWS, "df": "to_pandas()", "to_df": "to_pandas()",
               "columns": "list(curve) has the names of the columns", "epochs": "curve['Train/Epoch']"}
 
     def __init__(self, columns: Mapping[str, Any] = {}, label: str = "", limit: Optional[float] = None,
@@ -75,7 +79,11 @@ class Curve(_Drawn, Hinted, Dict[str, Column]):
 
     def to_pandas(self) -> Any:
         """A pandas.DataFrame, a row for each epoch; needs pandas."""
-        return importlib.import_module("pandas").DataFrame(dict(self))
+        try:
+            pandas = importlib.import_module("pandas")
+        except ImportError:
+            raise UnsupportedError("to_pandas: pandas is not installed (pip install pandas); dict(curve) has arrays by name") from None
+        return pandas.DataFrame(dict(self))
 
     def _repr_svg_(self) -> str:
         return draw([self])
@@ -87,7 +95,7 @@ class Curve(_Drawn, Hinted, Dict[str, Column]):
 class Curves(_Drawn, Hinted, Sequence[Curve]):
     """Several runs in one picture."""
 
-    _hints = {"plot": _DRAWS, "show": _DRAWS, "draw": _DRAWS}
+    _hints = {"show": _DRAWS, "draw": _DRAWS}
 
     def __init__(self, curves: Iterable[Curve]) -> None:
         self._curves = list(curves)

@@ -213,6 +213,16 @@ def shield_options() -> dict[str, Option]:
     return dict(_shield_options())
 
 
+@lru_cache(maxsize=None)
+def _planner_options() -> dict[str, Option]:
+    return options_of(lib.rdm_planner_option_at)
+
+
+def planner_options() -> dict[str, Option]:
+    """The options of a Planner by name, each with its help, default and bounds; empty without the simulation half."""
+    return dict(_planner_options())
+
+
 def features() -> _abi.Feature:
     """The halves that this library has: Feature.SIM | Feature.LEARN | Feature.POLICY."""
     return _abi.Feature(lib.rdm_features())

@@ -88,10 +88,17 @@ def encoded(value: str | os.PathLike[str]) -> bytes:
 raised: list[tuple[str, BaseException]] = []
 
 
+# What the library's texts tell to call, as it is said here.
+_CALLS = {
+    "rdm_agent_set_recording": "agent.recording = recording", "rdm_agent_update_slice": "agent.update_slice()",
+    "rdm_agent_discard": "agent.discard()", "rdm_policy_act_points": "policy.act(obs, points=points)"}
+
+
 def failure(code: int) -> Error:
     """The exception of the call that has just failed on this thread."""
     said = text(lib.rdm_last_error())
-    error = error_of(code, re.sub(r"\bsettings line \d+: ", "", said))  # a dict of options has no lines
+    said = re.sub(r"\bsettings line \d+: ", "", said)  # a dict of options has no lines
+    error = error_of(code, re.sub(r"\brdm_\w+", lambda found: _CALLS.get(found[0], found[0]), said))
     return error if not raised else _of_python(error)
 
 

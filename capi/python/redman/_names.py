@@ -41,7 +41,7 @@ def keywords(*, aliases: Mapping[str, str] = {}, hints: Mapping[str, str] = {},
              options: bool = False) -> Callable[[Function], Function]:
     """A function that also takes the aliases of its arguments, and says of others what to write instead.
 
-    options: words of an algorithm or a task are sent to the argument of that name.
+    options: what names an option of a task, an algorithm, a shield or a planner is laid into the argument of that name.
     """
     def wrap(function: Function) -> Function:
         names = list(inspect.signature(function).parameters)
@@ -63,29 +63,32 @@ def _known(function: Callable[..., Any], placed: list[str], given: dict[str, Any
     out: dict[str, Any] = {}
     for key, value in given.items():
         own = aliases.get(key, key)
+        option = _option(key) if options and own not in known and key not in hints else ""
+        if option:
+            laid = dict(given.get("options") or {})
+            if option in laid or option in out.get("options", {}):
+                raise UsageError(f"{name}: option {option} is given twice")
+            out["options"] = {**laid, **out.get("options", {}), option: value}
+            continue
         if own not in known:
-            raise UsageError(f"{name}({key}=...): {_advice(key, value, known, hints, options)}")
+            raise UsageError(f"{name}({key}=...): {_advice(key, known, hints)}")
+        if own == "options" and own in out:  # laid already
+            continue
         if own in out or own in placed:
             raise UsageError(f"{name}: {key} and {own} are one argument, given twice")
         out[own] = value
     return out
 
 
-def _advice(key: str, value: Any, known: frozenset[str], hints: Mapping[str, str], options: bool) -> str:
-    if key in hints:
-        return hints[key]
-    if options:
-        own = _option(key)
-        if own:
-            return f"{'it' if own == key else own} is an option: options={{{own!r}: {value!r}}}"
-    return f"there is no such argument{nearest(key, known - {'self'})}"
+def _advice(key: str, known: frozenset[str], hints: Mapping[str, str]) -> str:
+    return hints.get(key) or f"there is no such argument{nearest(key, known - {'self'})}"
 
 
 def _option(key: str) -> str:
     """The option of a task or an algorithm that a word stands for, "" for none."""
     from . import _discovery
     every = {name for algo in _discovery.algos().values() for name in algo.options}
-    every |= set(_discovery.shield_options())
+    every |= {*_discovery.shield_options(), *_discovery.planner_options()}
     every |= {name for task in _discovery.tasks().values() for name in task.options}
     for word in (key, WORDS.get(key, "")):
         if word in every:

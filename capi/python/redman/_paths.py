@@ -4,6 +4,8 @@ from __future__ import annotations
 import os
 from typing import Any, Mapping, Union
 
+from ._record import Record
+
 ENDINGS = {"task": (".task",), "robot": (".urdf", ".xml", ".mjcf", ".robot"), "object": (".object",)}
 
 
@@ -22,6 +24,7 @@ def named(kind: str, name: Union[str, os.PathLike[str]]) -> str:
 
 
 def named_options(options: Mapping[str, Any]) -> dict[str, Any]:
-    """Options whose files of robots and objects are the names of these."""
+    """Options where files of robots and objects, and a Robot or an Object, are the names of these."""
+    options = {key: getattr(value, "name") if isinstance(value, Record) else value for key, value in options.items()}
     return {key: next((named(kind, value) for kind in ("robot", "object") if is_file(kind, value)), value)
             for key, value in options.items()}

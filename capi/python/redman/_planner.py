@@ -5,7 +5,6 @@ import contextlib
 import ctypes
 import threading
 from ctypes import byref
-from functools import lru_cache
 from typing import Any, Callable, Mapping, Optional, Sequence
 
 import numpy as np
@@ -24,16 +23,6 @@ from ._pool import Pool
 from ._rows import FloatArray, given
 
 Stop = Callable[[int], Any]
-
-
-@lru_cache(maxsize=None)
-def _options() -> dict[str, _discovery.Option]:
-    return _discovery.options_of(lib.rdm_planner_option_at)
-
-
-def planner_options() -> dict[str, _discovery.Option]:
-    """The options of a Planner by name, each with its help, default and bounds; empty without the simulation half."""
-    return dict(_options())
 
 
 class PlanInfo(_abi.PlanInfo):
@@ -101,7 +90,7 @@ class Planner(Hinted):
         config = sized(_abi.rdm_planner_config)
         check(lib.rdm_planner_config_init(byref(config), ctypes.sizeof(config)))
         assign(config, {name: own[name] for name in ("seed", "num_threads")})
-        config.settings = settings_of(own["options"], {key: option.kind for key, option in _options().items()})
+        config.settings = settings_of(own["options"], {key: option.kind for key, option in _discovery.planner_options().items()})
         config.pool = pool._open()
         rows = {name: None if own[name] is None else np.ascontiguousarray(own[name], kind)
                 for name, kind in (("noise", np.float32), ("cost_limits", np.float64))}
@@ -161,7 +150,7 @@ class Planner(Hinted):
     def options(self) -> dict[str, Value]:
         """All options as this planner has them."""
         return read_settings(lib.rdm_planner_get_settings, self._handle.value,
-                             {key: option.kind for key, option in _options().items()})
+                             {key: option.kind for key, option in _discovery.planner_options().items()})
 
     def reset(self) -> None:
         """Forgets the plan, as for a new episode; the stream of noise continues."""

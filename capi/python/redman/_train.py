@@ -63,11 +63,8 @@ class Run(Hinted):
 
     _draws = "run.curve and run.policy draw themselves in a notebook; run.curve.save('curve.svg') writes the curve"
     _hints = {
-        "save": "run.policy.save('policy.rdm') writes the policy; train(..., out='runs/first') a whole run folder",
-        "plot": _draws, "render": f"{_draws}; the command `redman render` makes pictures and pages of an episode",
-        "epochs": "run.curve has a column for each quantity and a row for each epoch; a callback is given each Epoch",
-        "config": "run.options are those of the task, run.agent.options the learner's; config.json of run.folder has all",
-        "best": "run.policy is the best one", "model": "run.policy, or run.agent", "history": "run.curve",
+        "render": f"{_draws}; the command `redman render` makes pictures and pages of an episode",
+        "model": "run.policy, or run.agent", "history": "run.curve",
         "resume": "Python does not resume a run; the command `redman train --resume FOLDER` does, if it has a folder",
         "returns": "run.curve.returns", "costs": "run.curve.costs"}
 
@@ -93,6 +90,31 @@ class Run(Hinted):
         """Progress of the epochs."""
         return Curve(self._rows, f"{self.task} {self.algo} seed {self.seed}", self.agent.cost_limits[0],
                      str(self.folder or ""))
+
+    @property
+    def epochs(self) -> list[dict[str, float]]:
+        """The rows of the curve, one for each epoch."""
+        return [dict(zip(self._rows, row)) for row in zip(*self._rows.values())]
+
+    @property
+    def best(self) -> Policy:
+        """The policy that was kept: the best that stays within the limits, else the one that comes nearest."""
+        return self.policy
+
+    @property
+    def config(self) -> dict[str, Any]:
+        """What it was made with: task, algo, seed, the options of the task and of the learner, limits by the names of costs."""
+        limits = dict(zip(_discovery.task(self.task).costs, self.agent.cost_limits))
+        return {"task": self.task, "algo": self.algo, "seed": self.seed, "options": dict(self.options),
+                "agent_options": self.agent.options, "cost_limits": limits}
+
+    def plot(self) -> Curve:
+        """The curve, which draws itself as the last line of a cell of a notebook; run.curve.save("curve.svg") elsewhere."""
+        return self.curve
+
+    def save(self, path: Union[str, os.PathLike[str]]) -> None:
+        """Writes the policy file; train(..., out="runs/first") writes a whole run folder."""
+        self.policy.save(path)
 
     @classmethod
     def load(cls, folder: Union[str, os.PathLike[str]]) -> Run:

@@ -1,0 +1,128 @@
+"""What a user of other libraries writes first works here, or the error says what to write: a list of such lines."""
+import importlib.util
+import os
+import tempfile
+import unittest
+
+import numpy as np
+
+import redman
+
+TASK = "ball_run"
+WORKS = None  # in the place of the words of an error
+
+
+class World:
+    """What the lines may use: a pool, an agent, a short run with its folder."""
+
+    def __init__(self, folder):
+        self.pool = redman.Pool(TASK, 4)
+        self.pool.reset()
+        self.agent = redman.Agent(self.pool, options={"horizon": 32})
+        self.folder = os.path.join(folder, "run")
+        self.run = redman.train(TASK, steps=2000, envs=8, options={"horizon": 32}, out=self.folder, progress=False)
+        self.path = os.path.join(folder, "x.rdm")
+        self.run.policy.save(self.path)
+        self.policy = redman.Policy.trained(TASK)
+
+    def short(self, task=TASK, **arguments):
+        return redman.train(task, **{"steps": 200, "envs": 2, "progress": False, "options": {"horizon": 32}, **arguments})
+
+
+PANDAS = WORKS if importlib.util.find_spec("pandas") else "pip install pandas"
+# What the line is, the line, and what comes of it: it works, or the words of its error.
+HABITS = (
+    # Gymnasium
+    ("make an environment", lambda w: redman.make(TASK).reset(seed=1)[1]["cost"], WORKS),
+    ("make a vector of them", lambda w: redman.make_vec(TASK, 3).reset(seed=1)[0], WORKS),
+    ("the module of environments", lambda w: redman.gym.VectorEnv, WORKS),
+    ("a seed of a reset", lambda w: w.pool.reset(seed=3), WORKS),
+    ("options of a reset", lambda w: w.pool.reset(options={}), r"Pool\(task, options="),
+    ("draw actions", lambda w: w.pool.step(w.pool.action_space.sample()), WORKS),
+    ("bounds of observations", lambda w: w.pool.observation_space.shape == w.pool.obs.shape or 1 / 0, WORKS),
+    ("the space of one world", lambda w: w.pool.single_action_space.contains(w.pool.action[0]) or 1 / 0, WORKS),
+    ("an id in the place of a task", lambda w: redman.Pool("redman/BallRun-v0"), WORKS),
+    ("a name in capitals", lambda w: redman.Pool("BallRun"), WORKS),
+    ("a task as an object", lambda w: redman.Pool(redman.task(TASK)), WORKS),
+    ("rewards, plural", lambda w: w.pool.rewards, "reward"),
+    ("done", lambda w: w.pool.done, r"terminated \| truncated"),
+    ("infos", lambda w: w.pool.infos, "cost, success, status"),
+    ("names of costs", lambda w: w.pool.cost_names.index("speed"), WORKS),
+    ("seed of a pool", lambda w: w.pool.seed, WORKS),
+    ("copy a world", lambda w: w.pool.copy(0, 1), WORKS),
+    ("number of worlds, short", lambda w: redman.Pool(TASK, envs=2), WORKS),
+    ("an option as a keyword", lambda w: redman.Pool(TASK, max_steps=20), WORKS),
+    ("an option that is none", lambda w: redman.Pool(TASK, max_stepz=20), "there is no such argument"),
+    ("render an environment by name", lambda w: redman.render, "Pool.render"),
+    # Stable-Baselines3
+    ("predict with a policy", lambda w: w.policy.predict(w.pool.obs)[0], WORKS),
+    ("predict with an agent", lambda w: w.agent.predict(w.pool.obs), r"act\(obs, 'mean'\)"),
+    ("learn so many steps", lambda w: w.agent.learn(total_timesteps=100), WORKS),
+    ("an agent's train", lambda w: w.agent.train(100), r"agent\.learn\(steps\)"),
+    ("save an agent", lambda w: w.agent.save(w.path + ".agent"), WORKS),
+    ("load an agent", lambda w: w.agent.load(w.path + ".agent"), WORKS),
+    ("the algorithm as a class", lambda w: redman.PPO, "algo='ppo'"),
+    ("total steps", lambda w: redman.train(TASK, total_timesteps=200, envs=2, progress=False, horizon=32), WORKS),
+    ("parameters of a network", lambda w: w.policy.parameters, "policy.tensors"),
+    # PyTorch
+    ("call a policy", lambda w: w.policy(w.pool.obs), WORKS),
+    ("state_dict", lambda w: w.agent.state_dict, "agent.tensors"),
+    # OmniSafe, CleanRL, Spinning Up
+    ("a limit of the cost", lambda w: w.short(cost_limit=10), WORKS),
+    ("a learning rate", lambda w: w.short(learning_rate=1e-3), WORKS),
+    ("its short name", lambda w: w.short(lr=1e-3), WORKS),
+    ("a rate twice", lambda w: w.short(lr=1e-3, options={"learning_rate": 1e-3}), "given twice"),
+    ("widths of layers", lambda w: w.short(hidden=[16, 16]), WORKS),
+    ("an id to train on", lambda w: w.short("redman/BallRun-v0"), WORKS),
+    ("several seeds", lambda w: w.short(seed=[0, 1]), "for s in seeds"),
+    ("save a run", lambda w: w.run.save(w.path), WORKS),
+    ("draw a run", lambda w: w.run.plot()._repr_svg_(), WORKS),
+    ("draw its curve", lambda w: w.run.curve.plot().save(w.path + ".svg"), WORKS),
+    ("rows of a run", lambda w: w.run.epochs[-1]["Metrics/EpRet"], WORKS),
+    ("its settings", lambda w: w.run.config["cost_limits"]["cost"], WORKS),
+    ("its best policy", lambda w: w.run.best.act(np.zeros(7)), WORKS),
+    ("its model", lambda w: w.run.model, "run.policy"),
+    ("a table of its curve", lambda w: w.run.curve.to_pandas().shape, PANDAS),
+    # whatever there is
+    ("load a policy", lambda w: redman.load(w.path).act(np.zeros(7)), WORKS),
+    ("load a run's folder", lambda w: redman.load(w.folder).info, WORKS),
+    ("load what is not there", lambda w: redman.load(w.path + "m"), "there is no such file; nearest is x.rdm"),
+    ("evaluate a run", lambda w: redman.evaluate(w.run, episodes=2).return_mean, WORKS),
+    ("evaluate a folder", lambda w: redman.evaluate(w.folder, episodes=2).costs, WORKS),
+    ("evaluate an agent", lambda w: redman.evaluate(w.agent, TASK, episodes=2).returns, WORKS),
+    ("evaluate nothing that plays", lambda w: redman.evaluate(3, TASK), "is no policy"),
+    ("a task with a slip", lambda w: redman.Pool("bal_run"), "nearest"),
+)
+
+
+class Habits(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.world = World(cls.folder.name)
+
+    @classmethod
+    def tearDownClass(cls):
+        del cls.world
+        cls.folder.cleanup()
+
+    def test_each_line_works_or_says_what_to_write(self):
+        for name, line, words in HABITS:
+            with self.subTest(name):
+                if words is WORKS:
+                    line(self.world)
+                    continue
+                with self.assertRaisesRegex((redman.Error, AttributeError, TypeError), words):
+                    line(self.world)
+
+    def test_most_of_them_work(self):
+        self.assertGreaterEqual(sum(words is WORKS for _, _, words in HABITS), 30)
+
+    def test_errors_are_printed_by_the_names_that_users_catch(self):
+        for kind in (redman.NotFoundError, redman.ArgumentError, redman.UsageError, redman.StateError):
+            self.assertEqual(f"{kind.__module__}.{kind.__qualname__}", f"redman.{kind.__name__}")
+        self.assertEqual(redman.PolicyInfo.__module__, "redman")
+
+
+if __name__ == "__main__":
+    unittest.main()
