@@ -69,13 +69,18 @@ def _set(struct: ctypes.Structure, name: str, of: Any, value: Any, where: str, l
             setattr(struct, f"num_{name}", len(array))
         return [array]
     elif issubclass(of, ctypes.Array):
-        setattr(struct, name, of(*np.asarray(value).ravel().tolist()))
+        listed = np.asarray(value).ravel().tolist()
+        if name == "color" and len(listed) == 3:
+            listed.append(255)
+        if len(listed) > of._length_ or (len(listed) < of._length_ and name != "size"):  # a radius alone is a size
+            raise ArgumentError(f"{where}: {of._length_} numbers, not {len(listed)}")
+        setattr(struct, name, of(*listed))
     elif hasattr(of, "contents"):
-        listed = (of._type_ * len(value))()
-        kept = [part for i, row in enumerate(value) for part in fill(listed[i], row, f"{where}[{i}]", links)]
-        setattr(struct, name, listed)
-        setattr(struct, f"num_{name}", len(listed))
-        return [listed, *kept]
+        rows = (of._type_ * len(value))()
+        kept = [part for i, row in enumerate(value) for part in fill(rows[i], row, f"{where}[{i}]", links)]
+        setattr(struct, name, rows)
+        setattr(struct, f"num_{name}", len(rows))
+        return [rows, *kept]
     elif isinstance(value, str):
         setattr(struct, name, _word(type(struct), name, value, where, links))
     elif of in (ctypes.c_double, ctypes.c_float):

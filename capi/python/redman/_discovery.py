@@ -13,7 +13,7 @@ from ._abi import OptionKind, OptionLevel
 from ._error import UsageError
 from ._library import encoded, filled, check, lib, sized
 from ._options import Value, default_of, laid
-from ._paths import named
+from ._paths import is_file, named
 from ._record import Record
 
 R = TypeVar("R", bound=Record)
@@ -191,6 +191,12 @@ def task_name(task: TaskName) -> str:
     task = named("task", task)
     found = re.fullmatch(r"redman/(\w+)-v\d+", task)
     return found[1] if found else task
+
+
+def task_kept(task: TaskName) -> str:
+    """What makes it again in another process: its file, or its name."""
+    name = task_name(task)
+    return os.path.abspath(os.fspath(task)) if not isinstance(task, Task) and is_file("task", task) else name
 
 
 def algo(name: str) -> Algo:

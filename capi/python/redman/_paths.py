@@ -23,8 +23,12 @@ def named(kind: str, name: Union[str, os.PathLike[str]]) -> str:
     return called
 
 
+def by_name(options: Mapping[str, Any]) -> dict[str, Any]:
+    """Options where a Robot or an Object is its name."""
+    return {key: getattr(value, "name") if isinstance(value, Record) else value for key, value in options.items()}
+
+
 def named_options(options: Mapping[str, Any]) -> dict[str, Any]:
     """Options where files of robots and objects, and a Robot or an Object, are the names of these."""
-    options = {key: getattr(value, "name") if isinstance(value, Record) else value for key, value in options.items()}
     return {key: next((named(kind, value) for kind in ("robot", "object") if is_file(kind, value)), value)
-            for key, value in options.items()}
+            for key, value in by_name(options).items()}

@@ -18,7 +18,7 @@ from ._hold import LAST, Watch
 from ._library import (Handle, assign, check, encoded, failure, filled, int32, lib, raise_kept, raised, sized, text)
 from ._names import Hinted, keywords, nearest
 from ._options import Options, Value, read_settings, settings_of
-from ._paths import named_options
+from ._paths import by_name, named, named_options
 from ._rows import Array, Borrowed, DoubleArray, FloatArray, address, given, made, shape_of
 from ._spaces import box
 
@@ -51,7 +51,7 @@ def _struct(own: Mapping[str, Any]) -> _abi.rdm_pool_config:
     """The config of plain values."""
     config = sized(_abi.rdm_pool_config)
     check(lib.rdm_pool_config_init(byref(config), ctypes.sizeof(config)))
-    config.task = encoded(own["task"])
+    config.task = encoded(named("task", own["task"]))
     assign(config, {"num_envs": own["num_envs"], "seed": own["seed"], "num_threads": own["threads"]})
     config.autoreset = _autoreset(own["autoreset"])
     config.settings = settings_of(named_options(own["options"]), _kinds(own["task"]) if own["options"] else {})
@@ -165,8 +165,9 @@ class Pool(Hinted):
                  options: Optional[Options] = None, *, ranks: Optional[Ranks] = None) -> None:
         self._lock = threading.RLock()
         self._config: dict[str, Any] = {
-            "task": _discovery.task_name(task), "num_envs": num_envs, "seed": seed, "threads": threads,
-            "autoreset": _AUTORESET_NAMES[_autoreset(autoreset)], "options": dict(options or {}), "ranks": ranks}
+            "task": _discovery.task_kept(task), "num_envs": num_envs, "seed": seed, "threads": threads,
+            "autoreset": _AUTORESET_NAMES[_autoreset(autoreset)], "options": by_name(options or {}),
+            "ranks": ranks}
         config = _struct(self._config)
         self._handle: Optional[Handle] = Handle(lib.rdm_pool_create, lib.rdm_pool_destroy, byref(config))
         self._p = self._handle.value
