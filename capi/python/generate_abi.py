@@ -297,7 +297,7 @@ from ctypes import (CDLL, CFUNCTYPE, POINTER, Structure, c_char_p, c_double, c_f
                     c_size_t, c_uint8, c_uint32, c_uint64, c_void_p)
 from typing import Any, NamedTuple
 
-from ._record import Record
+from ._record import Members, Record
 
 
 class Rows(NamedTuple):
@@ -328,7 +328,7 @@ import enum
 from ctypes import (CDLL, POINTER, Structure, c_char_p, c_double, c_int32, c_size_t, c_uint32, c_void_p)
 
 from ._abi import Function, Rows, rdm_object_def, rdm_robot_def
-from ._record import Record
+from ._record import Members, Record
 
 
 '''
@@ -384,7 +384,7 @@ def types_text(found: list[Declared], known: list[Declared]) -> str:
         told = [about or d.name, ""]
         for name, value, doc in rows:
             told += wrapped(f"{name.removeprefix(prefix)} = {value}", doc)
-        out.append(f"class {camel(d.name)}(enum.{'IntFlag' if flags else 'IntEnum'}):\n"
+        out.append(f"class {camel(d.name)}(enum.{'IntFlag' if flags else 'IntEnum'}, metaclass=Members):\n"
                    f"    {quoted(chr(10).join(told), '    ')}\n\n")
         out += [f"    {name.removeprefix(prefix)} = {value}\n" for name, value, _ in rows]
         out.append("\n\n")

@@ -10,7 +10,7 @@ import unittest
 from pathlib import Path
 
 import redman
-from redman import _abi
+from redman import _abi, _import_abi
 from redman._library import lib
 
 TREE = Path(__file__).resolve().parents[2]
@@ -22,18 +22,20 @@ class Abi(unittest.TestCase):
     def test_generating_again_gives_the_committed_file(self):
         again = generate_abi.generate(generate_abi.headers())
         self.assertEqual(again, generate_abi.OUTPUT.read_text(encoding="utf-8"), "run capi/python/generate_abi.py")
+        again = generate_abi.generate_import(generate_abi.import_header(), generate_abi.headers())
+        self.assertEqual(again, generate_abi.IMPORT_OUTPUT.read_text(encoding="utf-8"), "run capi/python/generate_abi.py")
 
     def test_structs_have_the_recorded_layout(self):
         recorded = (TREE / "capi/layout.golden").read_text().split("\n")
         gone = set(re.findall(r"^} (rdm_\w+);", (TREE / "include/redman/deprecated.h").read_text(), re.MULTILINE))  # not bound
         self.assertTrue(gone)
         ours = []
-        for name, struct in _abi.STRUCTS.items():
+        for name, struct in {**_abi.STRUCTS, **_import_abi.STRUCTS}.items():
             for field, _ in struct._fields_:
                 place = getattr(struct, field)
                 ours.append(f"{name}.{field} {place.offset} {place.size}")
             ours.append(f"{name} {ctypes.sizeof(struct)}")
-        wanted = [line for line in recorded if line and not line.startswith("rdm_import_") and re.split(r"[. ]", line)[0] not in gone]
+        wanted = [line for line in recorded if line and re.split(r"[. ]", line)[0] not in gone]
         self.assertEqual(sorted(wanted), sorted(ours))
 
     def test_every_exported_function_has_a_signature_and_words(self):
@@ -41,6 +43,9 @@ class Abi(unittest.TestCase):
             listed = [name for part in parts for name in (TREE / f"capi/{part}.symbols").read_text().split()]
             ours = [name for name, f in _abi.FUNCTIONS.items() if f.experimental == experimental]
             self.assertEqual(sorted(listed), sorted(ours))
+        listed = (TREE / "capi/import/redman_import.symbols").read_text().split()
+        self.assertEqual(sorted(set(listed) & set(_import_abi.FUNCTIONS)), sorted(_import_abi.FUNCTIONS))
+        self.assertTrue(all(function.doc for function in _import_abi.FUNCTIONS.values()))
         for name, function in _abi.FUNCTIONS.items():
             self.assertTrue(function.doc, name)
             self.assertEqual(getattr(lib, name).argtypes, list(function.arguments.values()), name)
@@ -94,6 +99,18 @@ class Types(unittest.TestCase):
                             "shield.act(pool.action, mask=[True])\n"
                             "kind: redman.ShieldKind = shield.row(0).kind\n"
                             "steps: int = redman.evaluate('zero', 'bandit', shield={'noise': 0.1}).violating_steps\n"
+                            "planner = redman.Planner(pool, policy='trained', stop=lambda steps: steps > 3)\n"
+                            "share: float = planner.info.costs['cost'] + planner.act()[0]\n"
+                            "recording = redman.Recording(pool)\n"
+                            "with recording.step(pool, label=pool.action):\n    pool.step()\n"
+                            "agent = redman.Agent(pool, ranks=redman.Ranks(0, 1, lambda message: [message]))\n"
+                            "losses: tuple[float, ...] = agent.clone(recording, epochs=3).train_losses\n"
+                            "value, cost = agent.values(pool.obs)\n"
+                            "robot: redman.Robot = redman.load_robot('my.urdf', tips=['a', 'b'])\n"
+                            "line: int = robot.notes[0].line + robot.poses().tips.shape[0]\n"
+                            "thing: redman.Object = redman.objects()['egg']\n"
+                            "redman.Pool(redman.load_task('x.task'), options={'hand': 'my.urdf', 'object': thing})\n"
+                            "agent.policy().export('p.onnx')\n"
                             "low, high = redman.stats.interval({'a': [1.0, 2.0]})\n"
                             "z: str = redman.tasks()['bandit'].options['points'].help\n")
             run = subprocess.run([sys.executable, "-m", "mypy", "--strict", "--cache-dir", folder, "redman",

@@ -6,7 +6,7 @@ from ctypes import (CDLL, CFUNCTYPE, POINTER, Structure, c_char_p, c_double, c_f
                     c_size_t, c_uint8, c_uint32, c_uint64, c_void_p)
 from typing import Any, NamedTuple
 
-from ._record import Record
+from ._record import Members, Record
 
 
 class Rows(NamedTuple):
@@ -40,7 +40,7 @@ RDM_VERSION = RDM_VERSION_MAJOR * 1000000 + RDM_VERSION_MINOR * 1000 + RDM_VERSI
 VERSION = "0.1.0"  # that these types are of
 
 
-class ResultCode(enum.IntEnum):
+class ResultCode(enum.IntEnum, metaclass=Members):
     """values of rdm_result
 
     OK = 0
@@ -73,7 +73,7 @@ class ResultCode(enum.IntEnum):
     INTERNAL = -99
 
 
-class Feature(enum.IntFlag):
+class Feature(enum.IntFlag, metaclass=Members):
     """The halves of the library: worlds, learners; and frozen policies, which a build may have without
     the learners.
 
@@ -87,7 +87,7 @@ class Feature(enum.IntFlag):
     POLICY = 4
 
 
-class OptionKind(enum.IntEnum):
+class OptionKind(enum.IntEnum, metaclass=Members):
     """of an option
 
     NUMBER = 0
@@ -102,7 +102,7 @@ class OptionKind(enum.IntEnum):
     TEXT = 3
 
 
-class OptionLevel(enum.IntEnum):
+class OptionLevel(enum.IntEnum, metaclass=Members):
     """whom an option is for
 
     BASIC = 0: all users: lists begin with these; rows of tasks of your own are
@@ -115,7 +115,7 @@ class OptionLevel(enum.IntEnum):
     LEGACY = 2
 
 
-class ShapeKind(enum.IntEnum):
+class ShapeKind(enum.IntEnum, metaclass=Members):
     """of rdm_shape_info
 
     SPHERE = 0
@@ -136,7 +136,7 @@ class ShapeKind(enum.IntEnum):
     HULL = 6
 
 
-class JointKind(enum.IntEnum):
+class JointKind(enum.IntEnum, metaclass=Members):
     """of a joint
 
     REVOLUTE = 0
@@ -147,7 +147,7 @@ class JointKind(enum.IntEnum):
     PRISMATIC = 1
 
 
-class Autoreset(enum.IntEnum):
+class Autoreset(enum.IntEnum, metaclass=Members):
     """When a world begins again by itself: in the step that ended its episode, in the next, or
     never.
 
@@ -161,7 +161,7 @@ class Autoreset(enum.IntEnum):
     OFF = 2
 
 
-class Status(enum.IntFlag):
+class Status(enum.IntFlag, metaclass=Members):
     """bits of rdm_buffers.status
 
     CONTACTS = 1: contacts beyond contacts_max were left out
@@ -182,7 +182,7 @@ class Status(enum.IntFlag):
     SLOWED = 32
 
 
-class BaselineKind(enum.IntEnum):
+class BaselineKind(enum.IntEnum, metaclass=Members):
     """actions that nobody learned
 
     ZERO = 0
@@ -195,7 +195,7 @@ class BaselineKind(enum.IntEnum):
     RANDOM = 2
 
 
-class ActMode(enum.IntEnum):
+class ActMode(enum.IntEnum, metaclass=Members):
     """of rdm_agent_act
 
     SAMPLE = 0
@@ -206,7 +206,7 @@ class ActMode(enum.IntEnum):
     MEAN = 1
 
 
-class EpochFlag(enum.IntFlag):
+class EpochFlag(enum.IntFlag, metaclass=Members):
     """of rdm_epoch.flags
 
     NO_EPISODE = 1: no episode has ended so far: ret, cost, length and rates are NaN
@@ -233,7 +233,7 @@ class EpochFlag(enum.IntFlag):
     SLOWED = 512
 
 
-class MapFormat(enum.IntEnum):
+class MapFormat(enum.IntEnum, metaclass=Members):
     """OctoMap's files: RDM_MAP_BINARY (.bt: occupied or free) and RDM_MAP_FULL (.ot: the probabilities
     too).
 
@@ -245,7 +245,7 @@ class MapFormat(enum.IntEnum):
     FULL = 1
 
 
-class ShieldKind(enum.IntEnum):
+class ShieldKind(enum.IntEnum, metaclass=Members):
     """what a shield did with a proposed action
 
     OWN = 0: it went through
@@ -262,7 +262,7 @@ class ShieldKind(enum.IntEnum):
     PROJECTED = 4
 
 
-class RobotKind(enum.IntEnum):
+class RobotKind(enum.IntEnum, metaclass=Members):
     """of a robot
 
     OTHER = 0
@@ -275,7 +275,7 @@ class RobotKind(enum.IntEnum):
     ARM = 2
 
 
-class LinkRow(enum.IntEnum):
+class LinkRow(enum.IntEnum, metaclass=Members):
     """in the place of a row of links
 
     ROOT = -1
@@ -286,7 +286,7 @@ class LinkRow(enum.IntEnum):
     NONE = -2
 
 
-class ScenePart(enum.IntEnum):
+class ScenePart(enum.IntEnum, metaclass=Members):
     """what rdm_scene_find looks for; numbers count from 0 in the order of adding
 
     ROBOT = 0
@@ -307,7 +307,7 @@ class ScenePart(enum.IntEnum):
     MATERIAL = 6
 
 
-class Friction(enum.IntEnum):
+class Friction(enum.IntEnum, metaclass=Members):
     """in the place of a coefficient
 
     PASSES = -1
@@ -316,7 +316,7 @@ class Friction(enum.IntEnum):
     PASSES = -1
 
 
-class Scale(enum.IntEnum):
+class Scale(enum.IntEnum, metaclass=Members):
     """what a factor is on, and in brackets its bounds
 
     GRAVITY = 0: [-10, 10]

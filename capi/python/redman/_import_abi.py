@@ -5,10 +5,10 @@ import enum
 from ctypes import (CDLL, POINTER, Structure, c_char_p, c_double, c_int32, c_size_t, c_uint32, c_void_p)
 
 from ._abi import Function, Rows, rdm_object_def, rdm_robot_def
-from ._record import Record
+from ._record import Members, Record
 
 
-class ImportFormat(enum.IntEnum):
+class ImportFormat(enum.IntEnum, metaclass=Members):
     """of a file; AUTO looks at the first element
 
     AUTO = 0
@@ -23,7 +23,7 @@ class ImportFormat(enum.IntEnum):
     ROBOT = 3
 
 
-class NoteKind(enum.IntEnum):
+class NoteKind(enum.IntEnum, metaclass=Members):
     """of a note
 
     DROPPED = 0: in the file, not in the robot

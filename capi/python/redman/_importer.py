@@ -23,11 +23,11 @@ Loaded = TypeVar("Loaded", Robot, Object, Task)
 @lru_cache(maxsize=None)
 def importer() -> ctypes.CDLL:
     """The library, which stands beside libredman."""
-    named, own = os.environ.get("REDMAN_IMPORT_LIBRARY"), Path(lib._name)
+    named, own = os.environ.get("REDMAN_IMPORT_LIBRARY"), Path(lib._name).absolute()
     if named:
         candidates = [named]
-    elif own.is_absolute():
-        candidates = [str(path) for path in sorted(own.parent.glob("libredman_import.*"))[:1]]
+    elif os.path.dirname(lib._name):
+        candidates = [str(path) for path in sorted(own.parent.glob(f"libredman_import{own.suffixes[0]}*"))[:1]]
     else:
         candidates = [f"libredman_import.so.{_abi.RDM_ABI}"]
     tried = [] if candidates else [f"there is none in {own.parent}"]

@@ -90,7 +90,7 @@ def object_at(index: int) -> Object:
     return Object(index)
 
 
-def objects() -> Mapping[str, Object]:
+def objects() -> dict[str, Object]:
     """All objects by name, for option object; also found by alias: objects()["025_mug"]."""
     return _discovery.Listed(
         _discovery.listed(object_at, _abi.rdm_object_info, lib.rdm_object_info_at, lib.rdm_object_count()),

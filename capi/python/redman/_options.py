@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import ctypes
+import os
 from ctypes import byref, c_size_t
 from typing import Any, Callable, Iterable, Mapping, Optional, Sequence, Union
 
@@ -11,11 +12,13 @@ from . import _abi
 from ._abi import OptionKind
 from ._error import ArgumentError, UsageError
 from ._library import check, encoded, text
+from ._record import Record
 
 Value = Union[str, float, int, bool]
 # A pair is a range where an option takes one, from which each world draws at a reset; it is read back as a text. For an
-# option whose value is a list in a text, such as hidden, numbers in a list or a tuple are that list.
-Given = Union[Value, Sequence[float], Sequence[str]]
+# option whose value is a list in a text, such as hidden, numbers in a list or a tuple are that list. A robot or an object may be
+# its file, or a Robot or an Object.
+Given = Union[Value, Sequence[float], Sequence[str], "os.PathLike[str]", Record]
 Options = Mapping[str, Given]
 _COMMAS = ("actor_obs", "critic_obs")  # options whose value is a list of names with commas; of others it has +
 Kinds = Mapping[str, int]  # OptionKind of each key; noise.right.tip_force is one of noise.FIELD

@@ -1,7 +1,8 @@
-"""Records: what the library fills in a struct, as plain Python values."""
+"""Records: what the library fills in a struct, as plain Python values; and its enums."""
 from __future__ import annotations
 
 import ctypes
+import enum
 from typing import Any
 
 
@@ -9,6 +10,13 @@ def _plain(value: Any) -> Any:
     if isinstance(value, bytes):
         return value.decode("utf-8", errors="replace")
     return tuple(value) if isinstance(value, ctypes.Array) else value
+
+
+class Members(enum.EnumMeta):
+    """Of an enum help and completion tell its members alone, and nothing of what every int can do."""
+
+    def __dir__(cls) -> list[str]:
+        return ["__doc__", "__module__", *cls.__members__]
 
 
 class Record:

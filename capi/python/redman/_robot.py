@@ -5,7 +5,7 @@ import ctypes
 import os
 from ctypes import byref, c_int32
 from functools import lru_cache
-from typing import Any, Mapping, NamedTuple, Optional, Union
+from typing import Any, NamedTuple, Optional, Union
 
 import numpy as np
 
@@ -175,7 +175,7 @@ def robot_at(index: int) -> Robot:
     return Robot(index)
 
 
-def robots() -> Mapping[str, Robot]:
+def robots() -> dict[str, Robot]:
     """All robot descriptions by name, and by alias: robots()["shadow"]."""
     return _discovery.Listed(
         _discovery.listed(robot_at, _abi.rdm_robot, lib.rdm_robot_at, lib.rdm_robot_count()), robot)

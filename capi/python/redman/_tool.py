@@ -16,8 +16,8 @@ def tool_path() -> Optional[str]:
     named = os.environ.get("REDMAN_TOOL")
     if named:
         return named
-    here, library = Path(__file__).resolve().parent, Path(lib._name)
-    places = [here / "bin", here, library.parent / "bin"] if library.is_absolute() else [here / "bin", here]
+    here, library = Path(__file__).resolve().parent, Path(lib._name).absolute()
+    places = [here / "bin", here, *([library.parent / "bin"] if os.path.dirname(lib._name) else [])]
     for place in places:
         if (place / "redman").is_file() and os.access(place / "redman", os.X_OK):
             return str(place / "redman")
