@@ -365,10 +365,41 @@ def generate_import(text: str, base: str) -> str:
     return IMPORT_HEADER + types_text(found, [*declarations(base), *found])
 
 
+# What the texts of records and enums, which users of Python read, call the functions and structs of C.
+WORDS = {
+    "rdm_pool_step": "Pool.step", "rdm_pool_field_at": "Pool.fields", "rdm_pool_shape_at": "Pool.shapes",
+    "rdm_task_at and its like": "Task.number", "rdm_task_field_at": "Task.fields", "rdm_task_option_at": "Task.options",
+    "rdm_task_camera_at": "Task.cameras", "rdm_task_default_at": "Task.defaults", "rdm_algo_option_at": "Algo.options",
+    "rdm_policy_act_points": "Policy.act", "rdm_policy_novelty": "Policy.novelty", "rdm_policy_field_at": "Policy.fields",
+    "rdm_agent_pretrain": "Agent.pretrain", "rdm_agent_clone": "Agent.clone", "rdm_agent_rollout": "Agent.rollout",
+    "rdm_agent_set_option": "Agent.set", "rdm_planner_act": "Planner.act", "rdm_import_check": "load_robot(check=True)",
+    "rdm_object_create": "Object.create", "rdm_shape_info": "Shape", "rdm_buffers.status": "Pool.status",
+    "rdm_result": "Error.code", "RDM_ABI of": "the number of the ABI of"}
+
+
+def python_words(found: list[Declared]) -> dict[str, str]:
+    """The same, and of each enumerator."""
+    out = dict(WORDS)
+    for d in found:
+        if d.kind == "enum":
+            names = [name for name, _, _ in members(d)]
+            prefix = prefix_of(names)
+            out[f"{prefix}*"] = camel(d.name)
+            out.update((name, f"{camel(d.name)}.{name.removeprefix(prefix)}") for name in names)
+    return out
+
+
+def told(text: str, words: dict[str, str]) -> str:
+    """A text in the words of Python."""
+    longest = sorted(words, key=len, reverse=True)
+    return re.sub("|".join(rf"(?<!\w){re.escape(word)}(?!\w)" for word in longest), lambda found: words[found[0]], text)
+
+
 def types_text(found: list[Declared], known: list[Declared]) -> str:
     """Enums, structs and functions that were found; known: whose types they may have."""
     structs = {d.name for d in known if d.kind == "struct"}
     callbacks = {d.name for d in known if d.kind == "callback"}
+    words = python_words(known)
     out = []
     for d in found:
         if d.kind != "enum":
@@ -381,18 +412,18 @@ def types_text(found: list[Declared], known: list[Declared]) -> str:
             rows = [(name.replace("RDM_ERROR_", prefix), value, doc) for name, value, doc in rows]
         flags = len(rows) > 1 and all(value > 0 and value & (value - 1) == 0 for _, value, _ in rows)
         about = text_of(match[0].strip()) if (match := re.match(r"\s*" + COMMENT, d.body, re.S)) else d.doc
-        told = [about or d.name, ""]
+        lines = [told(about, words) or d.name, ""]
         for name, value, doc in rows:
-            told += wrapped(f"{name.removeprefix(prefix)} = {value}", doc)
+            lines += wrapped(f"{name.removeprefix(prefix)} = {value}", told(doc, words))
         out.append(f"class {camel(d.name)}(enum.{'IntFlag' if flags else 'IntEnum'}, metaclass=Members):\n"
-                   f"    {quoted(chr(10).join(told), '    ')}\n\n")
+                   f"    {quoted(chr(10).join(lines), '    ')}\n\n")
         out += [f"    {name.removeprefix(prefix)} = {value}\n" for name, value, _ in rows]
         out.append("\n\n")
     for d in found:
         if d.kind == "callback":
             out.append(f"{d.name} = {prototype(f'{d.result}({d.body})', structs, callbacks)}\n\n\n")
         elif d.kind == "struct":
-            out.append(struct_text(d, structs, callbacks))
+            out.append(struct_text(d, structs, callbacks, words))
     out.append("STRUCTS: dict[str, type[Structure]] = {\n")
     out += [f'    "{d.name}": {d.name},\n' for d in found if d.kind == "struct"]
     out.append("}\n\n# The rows that fields of structs point at.\nROWS: dict[str, dict[str, Rows]] = {\n")
@@ -409,9 +440,9 @@ def types_text(found: list[Declared], known: list[Declared]) -> str:
             continue
         given = parameters(d.body)
         arguments = ", ".join(f'"{v.name}": {ctype(v, structs, callbacks)}' for v in given)
-        words = f"{d.doc}\n{d.above}"
-        shaped = {v.name: (DTYPES[v.base], shape_of_argument(v, words)) for v in given
-                  if (v.pointer or v.length) and v.base in DTYPES and shape_of_argument(v, words)}
+        said = f"{d.doc}\n{d.above}"
+        shaped = {v.name: (DTYPES[v.base], shape_of_argument(v, said)) for v in given
+                  if (v.pointer or v.length) and v.base in DTYPES and shape_of_argument(v, said)}
         out.append(f'    "{d.name}": Function(\n        {result_type(d.result)}, {{{arguments}}},\n'
                    f'        {rows_text(shaped)}, {d.experimental},\n        {quoted(d.doc, " " * 8)}),\n')
     out.append('''}
@@ -433,7 +464,7 @@ def about_struct(d: Declared) -> str:
     return text_of(inside[1]) if inside else d.doc
 
 
-def struct_text(d: Declared, structs: set[str], callbacks: set[str]) -> str:
+def struct_text(d: Declared, structs: set[str], callbacks: set[str], words: dict[str, str]) -> str:
     listed, hints = [], []
     about = [about_struct(d), ""] if about_struct(d) else []
     for variable, proto in fields(d):
@@ -450,17 +481,17 @@ def struct_text(d: Declared, structs: set[str], callbacks: set[str]) -> str:
         hints.append(f"    {variable.name}: {hint}\n")
         about += wrapped(variable.name, variable.doc)
     doc = quoted("\n".join(about), "    ")
-    return (f"{record_text(d)}class {d.name}(Structure):\n    {doc}\n\n{''.join(hints)}"
+    return (f"{record_text(d, words)}class {d.name}(Structure):\n    {doc}\n\n{''.join(hints)}"
             f"    _fields_ = [\n{''.join(listed)}    ]\n\n\n")
 
 
 RECORD_HINTS = {"c_float": "float", "c_double": "float"}
 
 
-def record_text(d: Declared) -> str:
+def record_text(d: Declared, words: dict[str, str]) -> str:
     """The Record of a struct that holds values alone, "" for one with pointers or structs in it."""
     lines = []
-    about = [about_struct(d) or f"The values of {d.name}.", ""]
+    about = [told(about_struct(d), words) or f"The values of {d.name}.", ""]
     for variable, proto in fields(d):
         if proto or (variable.pointer and variable.type != "const char *") or variable.base not in (*SCALARS, "char"):
             return ""
@@ -469,7 +500,7 @@ def record_text(d: Declared) -> str:
         hint = "str" if variable.base == "char" else RECORD_HINTS.get(SCALARS[variable.base], "int")
         hint = f"tuple[{hint}, ...]" if variable.length else hint
         hint += " | None" if "NULL" in variable.doc and hint == "str" else ""
-        about += wrapped(variable.name, variable.doc)
+        about += wrapped(variable.name, told(variable.doc, words))
         lines.append(f"    {variable.name}: {hint}\n")
     doc = quoted("\n".join(about), "    ")
     return f"class {camel(d.name)}(Record):\n    {doc}\n\n{''.join(lines)}\n\n"

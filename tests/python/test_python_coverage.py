@@ -232,6 +232,14 @@ class Manual(unittest.TestCase):
                         bare.append(f"{name}.{part}")
         self.assertEqual(bare, [])
 
+    def test_they_say_it_in_the_words_of_python(self):
+        for name in redman.__all__:
+            thing = getattr(redman, name)
+            members = vars(thing).values() if isinstance(thing, type) and not issubclass(thing, enum.Enum) else ()
+            for told in (thing, *members):
+                text = re.sub(r"rdm_(robot|object|task)_def\b", "", str(getattr(told, "__doc__", None)))  # the keywords of create
+                self.assertNotRegex(text, r"(?i)\brdm_", name)
+
     def test_records_tell_their_members(self):
         for kind in (redman.Spec, redman.PolicyInfo, redman.RecordingInfo, redman.PoolStats, redman.ShieldStats):
             for member in kind.__annotations__:

@@ -41,7 +41,7 @@ VERSION = "0.1.0"  # that these types are of
 
 
 class ResultCode(enum.IntEnum, metaclass=Members):
-    """values of rdm_result
+    """values of Error.code
 
     OK = 0
     ARGUMENT = -1: NULL, wrong struct_size, not finite, malformed
@@ -116,7 +116,7 @@ class OptionLevel(enum.IntEnum, metaclass=Members):
 
 
 class ShapeKind(enum.IntEnum, metaclass=Members):
-    """of rdm_shape_info
+    """of Shape
 
     SPHERE = 0
     CAPSULE = 1
@@ -162,7 +162,7 @@ class Autoreset(enum.IntEnum, metaclass=Members):
 
 
 class Status(enum.IntFlag, metaclass=Members):
-    """bits of rdm_buffers.status
+    """bits of Pool.status
 
     CONTACTS = 1: contacts beyond contacts_max were left out
     DIVERGED = 2: a value was not finite: the episode was truncated
@@ -213,12 +213,12 @@ class EpochFlag(enum.IntFlag, metaclass=Members):
     SKIPPED_GRADIENTS = 2: gradients that were not finite were left out
     INVALID_ROWS = 4: rows with valid 0
     CUT = 8: episodes were counted as ended at max_steps or episode_steps
-    DIVERGED = 16: decisions flagged RDM_STATUS_DIVERGED
-    CONTACTS = 32: decisions flagged RDM_STATUS_CONTACTS
-    BAD_ACTION = 64: decisions flagged RDM_STATUS_BAD_ACTION
-    TASK = 128: decisions flagged RDM_STATUS_TASK
-    SOLVER = 256: decisions flagged RDM_STATUS_SOLVER
-    SLOWED = 512: decisions flagged RDM_STATUS_SLOWED
+    DIVERGED = 16: decisions flagged Status.DIVERGED
+    CONTACTS = 32: decisions flagged Status.CONTACTS
+    BAD_ACTION = 64: decisions flagged Status.BAD_ACTION
+    TASK = 128: decisions flagged Status.TASK
+    SOLVER = 256: decisions flagged Status.SOLVER
+    SLOWED = 512: decisions flagged Status.SLOWED
     """
 
     NO_EPISODE = 1
@@ -234,7 +234,7 @@ class EpochFlag(enum.IntFlag, metaclass=Members):
 
 
 class MapFormat(enum.IntEnum, metaclass=Members):
-    """OctoMap's files: RDM_MAP_BINARY (.bt: occupied or free) and RDM_MAP_FULL (.ot: the probabilities
+    """OctoMap's files: MapFormat.BINARY (.bt: occupied or free) and MapFormat.FULL (.ot: the probabilities
     too).
 
     BINARY = 0
@@ -293,7 +293,7 @@ class ScenePart(enum.IntEnum, metaclass=Members):
     BODY = 1
     LINK = 2: of all robots, robot by robot; joint i moves link i
     JOINT = 3
-    SHAPE = 4: as rdm_pool_shape_at: robots, bodies, those that stand still
+    SHAPE = 4: as Pool.shapes: robots, bodies, those that stand still
     SENSOR = 5: the link of a fingertip, for rdm_world_get_sensor
     MATERIAL = 6: "default" is 0
     """
@@ -349,7 +349,7 @@ class Scale(enum.IntEnum, metaclass=Members):
     FRICTION = 12
 
 
-class Quantity(enum.IntEnum):
+class Quantity(enum.IntEnum, metaclass=Members):
     """of worlds, each so many doubles
 
     Q = 0: 1: coordinate of a joint, rad (m)
@@ -391,7 +391,7 @@ class Quantity(enum.IntEnum):
 class Build(Record):
     """what this library was made of
 
-    abi: RDM_ABI of the library
+    abi: the number of the ABI of the library
     version: "0.1.0"
     ode: version of ODE, "" without the simulation half
     eigen: version of Eigen
@@ -534,9 +534,9 @@ class rdm_option(Structure):
 class OptionSpec(Record):
     """one row of an option table
 
-    kind: RDM_KIND_NUMBER, RDM_KIND_INTEGER, RDM_KIND_FLAG, RDM_KIND_TEXT
-    live: flag: rdm_agent_set_option may change it after creation
-    level: RDM_LEVEL_BASIC, RDM_LEVEL_ADVANCED, RDM_LEVEL_LEGACY
+    kind: OptionKind.NUMBER, OptionKind.INTEGER, OptionKind.FLAG, OptionKind.TEXT
+    live: flag: Agent.set may change it after creation
+    level: OptionLevel.BASIC, OptionLevel.ADVANCED, OptionLevel.LEGACY
     key: static; its last word FIELD: any name of a field, or a pattern with '*'
     help: one line, with the unit
     text: default of a text option, or of a number that is a range, else NULL
@@ -756,11 +756,11 @@ class Spec(Record):
     cost_dim: count
     max_steps: control steps of an episode
     layout_hash: of field names, counts and action order: policies carry it
-    num_fields: for rdm_pool_field_at
-    num_shapes: for rdm_pool_shape_at
+    num_fields: for Pool.fields
+    num_shapes: for Pool.shapes
     num_joints: of all robots
-    task: index for rdm_task_at and its like
-    action_repeat: control steps in one rdm_pool_step: option action_repeat
+    task: index for Task.number
+    action_repeat: control steps in one Pool.step: option action_repeat
     """
 
     control_dt: float
@@ -836,12 +836,12 @@ class PolicyInfo(Record):
     num_params: of the network
     task: "" for a host's own environment
     activation: of the hidden layers: "tanh", "elu", "relu"; static
-    num_points: of the cloud beside each row, for rdm_policy_act_points; 0: it reads none
+    num_points: of the cloud beside each row, for Policy.act; 0: it reads none
     num_point_classes: that it tells points apart by, 0: none
     num_features: that its encoder makes of a cloud, 0 without
     point_color: whether it reads the colours of points: 0, 1
-    num_fields: for rdm_policy_field_at; 0: the file says none
-    novelty: whether rdm_policy_novelty tells: 0, 1
+    num_fields: for Policy.fields; 0: the file says none
+    novelty: whether Policy.novelty tells: 0, 1
     generation: which network: the low 32 bits are the epochs that its agent had learned, the high ones a
         checksum of it; what was sampled by another one is stale. 0: unknown
     """
@@ -935,10 +935,10 @@ class Task(Record):
     action_dim: count, default options
     cost_dim: count of cost columns
     max_steps: control steps of an episode, default options
-    num_fields: for rdm_task_field_at
-    num_options: for rdm_task_option_at
-    num_cameras: for rdm_task_camera_at
-    num_defaults: for rdm_task_default_at
+    num_fields: for Task.fields
+    num_options: for Task.options
+    num_cameras: for Task.cameras
+    num_defaults: for Task.defaults
     action_order: what the entries of the action are: "thrust, turn"; of hands groups, "right joints, force,
         torque"; default options
     """
@@ -1149,7 +1149,7 @@ class rdm_robot(Structure):
 class JointInfo(Record):
     """a joint of a robot, a scene or a pool's worlds
 
-    kind: RDM_JOINT_*: revolute joints in rad and N m, prismatic in m and N
+    kind: JointKind: revolute joints in rad and N m, prismatic in m and N
     parent: the joint before it on the way from the base, -1: none
     action: entry of the action (of a robot, in a scene too: its command) that is its own; -1: none, or only the
         functions of a host's task know
@@ -1220,9 +1220,9 @@ class rdm_joint_info(Structure):
 class ObjectInfo(Record):
     """an object by name, for option object=...
 
-    kind: RDM_SHAPE_* of its only shape; -1: it has several
+    kind: ShapeKind of its only shape; -1: it has several
     num_shapes: count
-    own: flag: a host's own, by rdm_object_create
+    own: flag: a host's own, by Object.create
     name: "egg"
     alias: another name, "025_mug"; NULL: none
     summary: one line, may be ""
@@ -1408,7 +1408,7 @@ class rdm_buffers(Structure):
 class ShapeInfo(Record):
     """a part of what the scene is made of, the same for all worlds
 
-    kind: RDM_SHAPE_SPHERE ... RDM_SHAPE_HULL; plane: the half space below z = 0 of its frame
+    kind: ShapeKind.SPHERE ... ShapeKind.HULL; plane: the half space below z = 0 of its frame
     fixed: flag: never moves
     color: red, green, blue, 255
     name: "right.ff_distal"
@@ -1452,8 +1452,8 @@ class rdm_shape_info(Structure):
 class Contact(Record):
     """frozen layout: one contact point of the last substep
 
-    shape_a: for rdm_pool_shape_at
-    shape_b: for rdm_pool_shape_at
+    shape_a: for Pool.shapes
+    shape_b: for Pool.shapes
     position: m
     normal: unit, from b into a
     force: N, on a
@@ -1502,12 +1502,12 @@ class PoolStats(Record):
     contacts_mean: mean of the same
     joint_drift: m, largest gap of any joint now, all worlds
     steps: control steps of one world, summed over worlds
-    diverged: steps and resets flagged RDM_STATUS_DIVERGED so far
-    overflowed: steps flagged RDM_STATUS_CONTACTS so far
-    bad_actions: steps flagged RDM_STATUS_BAD_ACTION so far
-    task_failed: steps flagged RDM_STATUS_TASK so far
-    unconverged: steps flagged RDM_STATUS_SOLVER so far
-    slowed: steps flagged RDM_STATUS_SLOWED so far
+    diverged: steps and resets flagged Status.DIVERGED so far
+    overflowed: steps flagged Status.CONTACTS so far
+    bad_actions: steps flagged Status.BAD_ACTION so far
+    task_failed: steps flagged Status.TASK so far
+    unconverged: steps flagged Status.SOLVER so far
+    slowed: steps flagged Status.SLOWED so far
     solver_residual: m/s, what a contact's normal velocity was still wrong by when the last sweep of the last
         step came to it, the largest of all worlds; NaN: engine ode, not measured
     violations: control steps so far in which column 0, or a cost with a limit by the task, was above 0
@@ -1579,7 +1579,7 @@ class rdm_pool_stats(Structure):
 class RayHit(Record):
     """what a ray meets first
 
-    shape: for rdm_pool_shape_at; -1: nothing, all else is NaN
+    shape: for Pool.shapes; -1: nothing, all else is NaN
     distance: m, from the origin
     point: m, where the ray enters it
     normal: unit, out of the shape there
@@ -1618,7 +1618,7 @@ class rdm_ray_hit(Structure):
 class Algo(Record):
     """an algorithm
 
-    num_options: for rdm_algo_option_at
+    num_options: for Algo.options
     name: "ppo_lag"
     summary: one line with the paper
     """
@@ -1811,17 +1811,17 @@ class Epoch(Record):
     value_cost: mean prediction over the batch
     passes: over the data, fewer after an early stop
     cost_signal: costs are sums of 0: costs, 1: their magnitudes (option cost_signal=raw)
-    flags: RDM_EPOCH_*
+    flags: EpochFlag
     skipped_gradients: in this epoch, as all counts below: steps left out
     invalid_rows: decisions with valid 0 that did not only reset
-    diverged: decisions flagged RDM_STATUS_DIVERGED
-    contacts_left_out: decisions flagged RDM_STATUS_CONTACTS
-    bad_actions: decisions flagged RDM_STATUS_BAD_ACTION
-    task_failed: decisions flagged RDM_STATUS_TASK
-    unconverged: decisions flagged RDM_STATUS_SOLVER
-    slowed: decisions flagged RDM_STATUS_SLOWED
+    diverged: decisions flagged Status.DIVERGED
+    contacts_left_out: decisions flagged Status.CONTACTS
+    bad_actions: decisions flagged Status.BAD_ACTION
+    task_failed: decisions flagged Status.TASK
+    unconverged: decisions flagged Status.SOLVER
+    slowed: decisions flagged Status.SLOWED
     violations: control steps in which column 0, or a cost with a limit by the task, was above 0; -1: not an
-        epoch of rdm_agent_rollout
+        epoch of Agent.rollout
     refused: decisions that a shield changed; -1: there was none
     unproven: of these, where nothing was known to be clean; -1: likewise
     copied: control steps of the shield's copies; -1: likewise
@@ -2090,7 +2090,7 @@ class rdm_points(Structure):
 
 
 class PretrainConfig(Record):
-    """how rdm_agent_pretrain learns
+    """how Agent.pretrain learns
 
     num_labels: kinds of points to tell apart, 2..64, required
     epochs: passes over the clouds, 1..100000, default 20
@@ -2139,7 +2139,7 @@ class rdm_pretrain_config(Structure):
 
 
 class PretrainReport(Record):
-    """what rdm_agent_pretrain did
+    """what Agent.pretrain did
 
     train_rows: clouds
     validation_rows: clouds
@@ -2474,7 +2474,7 @@ class rdm_planner_spec(Structure):
 
 
 class PlanInfo(Record):
-    """what a call of rdm_planner_act found
+    """what a call of Planner.act found
 
     planned: 1; 0: the plan was followed, all else but cut and steps is 0
     best: sample that is best in the last iteration that was finished
@@ -2631,7 +2631,7 @@ class rdm_shield_config(Structure):
 class ShieldRow(Record):
     """what was done in a world's last decision, and why
 
-    kind: RDM_SHIELD_*
+    kind: ShieldKind
     column: of what was refused: the cost that it would have met, -1: it was not, or the copy diverged; of what
         was projected: of the guard that it broke most, -1: the host's own
     ahead: control steps until that, 0: nothing was refused
@@ -2682,11 +2682,11 @@ class ShieldStats(Record):
     decisions: count
     inquiries: decisions that copies were asked about
     failed: inquiries whose proposed way met a cost
-    changed: decisions of RDM_SHIELD_CHANGED
-    planned: of RDM_SHIELD_PLAN
-    unproven: of RDM_SHIELD_UNPROVEN
+    changed: decisions of ShieldKind.CHANGED
+    planned: of ShieldKind.PLAN
+    unproven: of ShieldKind.UNPROVEN
     copied: control steps that copies took
-    projected: decisions of RDM_SHIELD_PROJECTED
+    projected: decisions of ShieldKind.PROJECTED
     """
 
     decisions: int
@@ -2979,7 +2979,7 @@ class rdm_clone_config(Structure):
 
 
 class CloneReport(Record):
-    """what rdm_agent_clone did
+    """what Agent.clone did
 
     epochs: that were run
     best_epoch: from 1: whose weights were kept; without validation the last one's
@@ -3706,7 +3706,7 @@ class rdm_motion(Structure):
 class Factor(Record):
     """frozen layout: on a constant of the scene, in one world
 
-    what: RDM_SCALE_*
+    what: Scale
     index: of the link, robot or body, or the first material
     other: the second material of a friction
     factor: times the scene's value
@@ -3944,7 +3944,7 @@ class OptionDef(Record):
     number: default of number, integer, flag; of a range its middle
     low: inclusive bounds
     high: inclusive bounds
-    kind: RDM_KIND_NUMBER, RDM_KIND_INTEGER, RDM_KIND_FLAG, RDM_KIND_TEXT
+    kind: OptionKind.NUMBER, OptionKind.INTEGER, OptionKind.FLAG, OptionKind.TEXT
     live: unused
     """
 

@@ -180,7 +180,8 @@ class Agent(Taught, Hinted):
 
     def record(self, reward: Any, cost: Any = None, terminated: Any = None, truncated: Any = None,
                final_obs: Any = None, valid: Any = None, success: Any = None, steps: Any = None) -> None:
-        """What followed the last sampled actions, a row per world; what is None is as rdm_transition says.
+        """What followed the last sampled actions, a row per world. None: no ends, all rows are valid, no success, a truncation has
+        value 0, a decision took option action_repeat control steps.
 
         reward and cost are sums over the decision, final_obs is read where truncated, steps are control steps.
         """

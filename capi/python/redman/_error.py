@@ -5,7 +5,7 @@ from ._abi import ResultCode
 
 
 class Error(Exception):
-    """A failed call: str(error) is the library's line of text, error.code the rdm_result."""
+    """A failed call: str(error) is the library's line of text, error.code the redman.ResultCode."""
 
     code: int = ResultCode.INTERNAL
 

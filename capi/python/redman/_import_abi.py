@@ -29,7 +29,7 @@ class NoteKind(enum.IntEnum, metaclass=Members):
     DROPPED = 0: in the file, not in the robot
     CHANGED = 1: in the robot, in another form
     GUESSED = 2: not in the file
-    CHECK = 3: found by rdm_import_check
+    CHECK = 3: found by load_robot(check=True)
     """
 
     DROPPED = 0
@@ -102,7 +102,7 @@ class rdm_import_config(Structure):
 class ImportNote(Record):
     """frozen layout; texts live as long as the handle
 
-    kind: RDM_NOTE_*
+    kind: NoteKind
     line: of the file, from 1; 0: of none
     text: one line, with the element and, in an included file, its name
     """

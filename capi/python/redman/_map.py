@@ -39,7 +39,7 @@ class Map:
         m.insert(origin, points)
         m.query(points)                     # probability of occupied, -1 where unknown
 
-    Points are in m. Other fields of rdm_map_config are keywords: memory (bytes, 64 MiB), max_range (m, 4; 0: none), hit,
+    Points are in m. More keywords: memory (bytes, 64 MiB), max_range (m, 4; 0: none), hit,
     miss, low, high, threshold. dropped: voxels that it left out so far, since it was full.
     """
 

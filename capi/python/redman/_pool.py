@@ -244,8 +244,8 @@ class Pool(Hinted):
 
     @property
     def status(self) -> npt.NDArray[np.uint32]:
-        """[num_envs] bits of the last step or reset, RDM_STATUS_*: 1 contacts were left out, 2 diverged, 4 bad action, 8
-        the task failed, 16 contacts were not solved."""
+        """[num_envs] bits of the last step or reset, redman.Status: 1 contacts were left out, 2 diverged, 4 bad action, 8 the
+        task failed, 16 contacts were not solved, 32 a body was slowed."""
         return self._rows["status"]
 
     @property
