@@ -283,6 +283,21 @@ class OfAPool(unittest.TestCase):
         with self.assertRaises(redman.ArgumentError):
             redman.Agent(redman.Pool("grasp", 8)).rollout(pool)
 
+    def test_it_learns_so_many_steps(self):
+        pool, other = (redman.Pool("ball_run", 4, seed=1) for _ in range(2))
+        agent, by_hand = (redman.Agent(worlds, options={"horizon": 16}) for worlds in (pool, other))
+        heard = []
+        epoch = agent.learn(3 * 64 - 10, callback=lambda e: heard.append(e.epoch))  # epochs of 64 steps; it resets the pool
+        other.reset()
+        for _ in range(3):
+            by_hand.rollout(other)
+        self.assertEqual((epoch.epoch, heard, agent.save()), (3, [1, 2, 3], by_hand.save()))
+        self.assertEqual(agent.learn(1000, callback=lambda e: True).epoch, 4)
+        with self.assertRaisesRegex(redman.UsageError, r"agent\.learn\(steps, pool\)"):
+            redman.Agent(obs_dim=3, action_dim=1).learn(100)
+        with self.assertRaisesRegex(redman.ArgumentError, "steps: 0 is not above 0"):
+            agent.learn(0)
+
     def test_options_that_are_live_change(self):
         agent, _, _ = trained()
         agent.set(learning_rate=1e-5)

@@ -235,6 +235,30 @@ class Files(Folder):
         self.assertEqual(said.strip(), pool.hash())
 
 
+class Kinds(Folder):
+    def test_load_gives_what_a_file_holds(self):
+        agent = redman.Agent(obs_dim=3, action_dim=1)
+        agent.policy().save(self.folder / "p.rdm")
+        agent.save(self.folder / "a.rdm")
+        agent.write_checkpoint(self.folder / "c.rdm")
+        room = redman.Map()
+        room.insert([0, 0, 0], [[1, 0, 0]])
+        room.save_file(self.folder / "room.ot")
+        rows = redman.Recording(obs_dim=3, action_dim=1)
+        rows.append(obs=np.zeros((2, 3)), action=np.zeros((2, 1)))
+        rows.save(self.folder / "rows.npz")
+        redman.train("bandit", steps=500, envs=4, out=self.folder / "run", progress=False)
+        for name, kind in (("p.rdm", redman.Policy), ("room.ot", redman.Map), ("rows.npz", redman.Recording),
+                           ("run", redman.Policy), ("run/progress.csv", redman.Curve)):
+            self.assertIs(type(redman.load(self.folder / name)), kind, name)
+        self.assertEqual(redman.load(self.folder / "room.ot").save(), room.save())
+        for name in ("a.rdm", "c.rdm"):
+            with self.assertRaisesRegex(redman.FormatError, r"agent\.load\(path\), or agent\.read_checkpoint"):
+                redman.load(self.folder / name)
+        with self.assertRaisesRegex(redman.MissingFileError, "no policy.rdm in it"):
+            redman.load(self.folder)
+
+
 class Importer(unittest.TestCase):
     def test_without_it_the_error_says_what_to_do(self):
         code = f"import redman\ntry:\n    redman.load_task({str(PRESS)!r})\nexcept redman.UnsupportedError as e:\n    print(e)"

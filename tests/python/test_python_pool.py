@@ -305,6 +305,28 @@ class Shown(unittest.TestCase):
         self.assertIsNone(redman.Pool("grasp").sensors.points)
 
 
+    def test_spaces_are_those_of_its_rows(self):
+        pool = redman.Pool(TASK, 3)
+        self.assertEqual(pool.observation_space.shape, (3, pool.obs_dim))
+        self.assertEqual(pool.single_observation_space.shape, (pool.obs_dim,))
+        self.assertIn(pool.reset(), pool.observation_space)
+        action = pool.action_space.sample()
+        self.assertEqual((action.shape, action.dtype), (pool.action.shape, np.float32))
+        pool.step(action)
+        self.assertTrue(np.array_equal(pool.action, action))
+        self.assertIn(action[0], pool.single_action_space)
+
+    def test_a_spec_is_known_before_a_pool(self):
+        options = {"action_repeat": 4}
+        self.assertEqual(redman.spec(TASK, options), redman.Pool(TASK, 5, options=options).spec)
+        with self.assertRaisesRegex(redman.NotFoundError, "nearest is action_repeat"):
+            redman.spec(TASK, {"action_repea": 4})
+
+    def test_nothing_failed_in_the_librarys_own_worlds(self):
+        pool = redman.Pool(TASK, 2)
+        self.assertEqual([pool.world_error(env) for env in (0, 1)], ["", ""])
+
+
 class Refused(unittest.TestCase):
     def test_errors_say_what_and_are_what_python_expects(self):
         cases = [

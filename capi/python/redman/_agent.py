@@ -279,9 +279,7 @@ class Agent(Taught, Hinted):
             pool = None if self._pool is None else self._pool()
         if pool is None:
             raise UsageError("learn: on which worlds? agent.learn(steps, pool)")
-        try:
-            pool.hash()
-        except StateError:  # not reset yet
+        if not pool._begun:
             pool.reset()
         options = self.options
         if not steps > 0:

@@ -187,6 +187,7 @@ class Pool(Hinted):
         self._action = self._rows["action"]
         self._obs = self._rows["obs"]
         self._watch = Watch()
+        self._begun = False  # whether an episode was begun by reset, set_state or copy
         self._starts: tuple[Optional[Recording], float] = (None, 0.0)
         if ranks is not None:
             check(lib.rdm_pool_set_rank(self._p, ranks.rank, ranks.ranks))
@@ -337,6 +338,7 @@ class Pool(Hinted):
         chosen = self._mask(mask)
         with self._lock:
             self._check(lib.rdm_pool_reset(self._p, address(rows), address(chosen)))
+            self._begun = True
         return self._obs
 
     def step(self, action: Any = None, mask: Any = None) -> FloatArray:
@@ -381,6 +383,7 @@ class Pool(Hinted):
         """Continues from state(), with the same bytes. Writes obs anew and clears the other rows of that world."""
         with self._lock:
             self._check(lib.rdm_pool_read_state(self._p, int32(env, "env"), bytes(state), len(state)))
+            self._begun = True
 
     def set_starts(self, recording: Optional[Recording], share: float) -> None:
         """From the next reset on worlds begin an episode, with probability share (0 to 1), at a state of the recording, which
@@ -674,6 +677,7 @@ class Pool(Hinted):
         first, second = sorted((self, source), key=id)
         with first._lock, second._lock:
             self._check(lib.rdm_pool_copy(self._p, int32(dst, "dst"), source._open(), int32(src, "src")))
+            self._begun = True
 
     def __getstate__(self) -> dict[str, Any]:
         with self._lock:
