@@ -21,7 +21,7 @@ PACKAGE = Path(redman.__file__).parent
 ADAPTERS = ("gym", "omnisafe", "safety", "sb3", "stats")
 FUNCTIONS = {*_abi.FUNCTIONS, *_import_abi.FUNCTIONS}
 
-OWN_TASK = "within the functions of an own task (c_function); a .task file needs none"
+MANY = "Worlds has it for many worlds at once"
 HOST = "memory and threads of a host without a heap or with its own; Python has neither"
 HANDLE_TEXT = "the exception of the call has the text"
 # A name or a pattern: why no name of Python calls it. A row that nothing needs is a failure.
@@ -34,8 +34,10 @@ REASONS = {
     "rdm_pool_get_buffers": "rows are arrays of numpy, which the pool is given (rdm_pool_set_buffers)",
     "rdm_pool_setting_at": "pool.options has all, by rdm_pool_get_settings",
     "rdm_agent_setting_at": "agent.options has all, by rdm_agent_get_settings",
-    "rdm_fail": OWN_TASK, "rdm_scene_*": OWN_TASK, "rdm_world_*": OWN_TASK, "rdm_random_*": OWN_TASK, "rdm_rotation": OWN_TASK,
-    "rdm_contact_law_init": OWN_TASK, "rdm_task_def_init": OWN_TASK, "rdm_task_create": OWN_TASK,
+    "rdm_fail": "a function of redman.Task raises", "rdm_random_bits": "Worlds.uniform draws", "rdm_random_split": "Task.draws", "rdm_scene_get_[rt]*": "SceneBuilder.option", "rdm_rotation": "numpy turns",
+    "rdm_scene_set_actions": "the class has action_dim, hold and mean", "rdm_scene_user": "self is the task's own",
+    "rdm_world_user": "self is the task's own", "rdm_world_get_[blst]*": MANY, "rdm_world_push_*": MANY, "rdm_world_set_[bcjt]*": MANY,
+    "rdm_world_set_feedforward": MANY,
 }
 
 

@@ -19,12 +19,12 @@ WHAT IS THERE. help(redman.Pool) and so on tell more.
     learners        Agent, Epoch, CostLimits, Options; Recording, CloneReport; Ranks
     policies        Policy, Actor, Origin, HoldWarning; Planner, PlanInfo; Shield, ShieldRow, project
     runs            train, Run, Callback; evaluate, Evaluation, Player; curve, Curve, Curves; stats
-    your own        Robot.create, Object.create, a .task file; check_task, c_function
+    your own        Task, RowTask, Verdict, Worlds, SceneBuilder; Robot.create, Object.create, a .task file; check_task, c_function
     environments    redman.gym, redman.sb3, redman.safety, redman.omnisafe; make, make_vec
     records         Algo, Build, Camera, Cost, Field, Joint, MapInfo, Note, Object, Option, PlannerSpec, PolicyInfo, PoolStats,
-                    Poses, PretrainReport, RayHit, RecordingInfo, Robot, Shape, ShieldStats, Spec, Task
+                    Poses, PretrainReport, RayHit, RecordingInfo, Robot, Shape, ShieldStats, Spec, TaskInfo
     numbers         Autoreset, BaselineKind, Feature, JointKind, NoteKind, OptionKind, OptionLevel, ResultCode, RobotKind,
-                    ShapeKind, ShieldKind, Status
+                    Scale, ShapeKind, ShieldKind, Status
     errors          Error, of which are AllocationError, ArgumentError, CancelledError, FileError, FormatError, InternalError,
                     MissingFileError, NotFoundError, PhysicsError, RangeError, StateError, UnsupportedError, UsageError,
                     VersionError
@@ -41,13 +41,13 @@ from typing import TYPE_CHECKING
 
 from . import stats
 from ._abi import (Autoreset, BaselineKind, Build, Feature, JointKind, MapInfo, OptionKind, OptionLevel, PlannerSpec, PolicyInfo,
-                   PoolStats, PretrainReport, RayHit, RecordingInfo, ResultCode, RobotKind, ShapeKind, ShieldKind, ShieldStats,
+                   PoolStats, PretrainReport, RayHit, RecordingInfo, ResultCode, RobotKind, Scale, ShapeKind, ShieldKind, ShieldStats,
                    Spec, Status)
 from ._actor import Actor
 from ._agent import Agent, Epoch
 from ._callbacks import c_function
 from ._curve import Curve, Curves, curve
-from ._discovery import (Algo, Camera, Cost, Field, Joint, Option, Shape, Task, algo, algos, build, features, planner_options,
+from ._discovery import (Algo, Camera, Cost, Field, Joint, Option, Shape, TaskInfo, algo, algos, build, features, planner_options,
                          shield_options, task, tasks)
 from ._error import (AllocationError, ArgumentError, CancelledError, Error, FileError, FormatError, InternalError,
                      MissingFileError, NotFoundError, PhysicsError, RangeError, StateError, UnsupportedError, UsageError,
@@ -62,6 +62,7 @@ from ._map import Map, sample_furthest
 from ._names import moved
 from ._object import Object, objects
 from ._options import Options
+from ._own_task import RowTask, Task, Verdict
 from ._planner import PlanInfo, Planner
 from ._play import Evaluation, Player, evaluate
 from ._policy import Origin, Policy
@@ -69,9 +70,11 @@ from ._pool import Guard, Pool, Sensors, check_task, memory, spec
 from ._ranks import Ranks
 from ._recording import Recording
 from ._robot import Note, Poses, Robot, robot, robots
+from ._scene import SceneBuilder
 from ._shield import Shield, ShieldRow, project
 from ._teach import CloneReport
 from ._train import Callback, Run, train
+from ._worlds_rows import Worlds
 
 __version__ = version = build().version
 
@@ -82,8 +85,8 @@ __all__ = [
     "MissingFileError", "NotFoundError", "Note", "NoteKind", "Object", "Option", "OptionKind", "OptionLevel", "Options",
     "Origin", "PhysicsError", "PlanInfo", "Planner", "PlannerSpec", "Player", "Policy", "PolicyInfo", "Pool", "PoolStats",
     "Poses", "PretrainReport", "RangeError", "Ranks", "RayHit", "Recording", "RecordingInfo", "ResultCode", "Robot",
-    "RobotKind", "Run", "Sensors", "Shape", "ShapeKind", "Shield", "ShieldKind", "ShieldRow", "ShieldStats", "Spec",
-    "StateError", "Status", "Task", "UnsupportedError", "UsageError", "VersionError", "__version__", "algo", "algos", "build",
+    "RobotKind", "RowTask", "Run", "Scale", "SceneBuilder", "Sensors", "Shape", "ShapeKind", "Shield", "ShieldKind", "ShieldRow", "ShieldStats", "Spec",
+    "StateError", "Status", "Task", "TaskInfo", "UnsupportedError", "UsageError", "Verdict", "VersionError", "Worlds", "__version__", "algo", "algos", "build",
     "c_function", "check_task", "curve", "evaluate", "features", "load", "load_object", "load_robot", "load_task", "make",
     "make_vec", "memory", "objects", "planner_options", "project", "robot", "robots", "sample_furthest", "shield_options",
     "spec", "stats", "task", "tasks", "train", "version",

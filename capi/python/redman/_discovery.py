@@ -6,7 +6,7 @@ import os
 import re
 from ctypes import byref, c_int32
 from functools import lru_cache
-from typing import Any, Callable, Dict, Iterable, Iterator, Optional, TypeVar, Union
+from typing import TYPE_CHECKING, Any, Callable, Dict, Iterable, Iterator, Optional, TypeVar, Union
 
 from . import _abi
 from ._abi import OptionKind, OptionLevel
@@ -15,6 +15,9 @@ from ._library import encoded, filled, check, lib, sized
 from ._options import Value, default_of, laid
 from ._paths import is_file, named
 from ._record import Record
+
+if TYPE_CHECKING:
+    from ._own_task import Task
 
 R = TypeVar("R", bound=Record)
 
@@ -95,7 +98,7 @@ class Listed(Dict[str, R]):
         return self._called(name)
 
 
-class Task(_abi.Task):
+class TaskInfo(_abi.Task):
     """A task with its default options; fields, costs, options and cameras by name, in their order."""
 
     number: int  # of the task in this process
@@ -138,13 +141,13 @@ class Algo(_abi.Algo):
         return f"<Algo {self.name}: {self.summary}>"
 
 
-# Of functions that take a task: its name, its .task file, its id in Gymnasium, or what task(name) gave.
-TaskName = Union[str, "os.PathLike[str]", Task]
+# Of functions that take a task: its name, its .task file, its id in Gymnasium, what task(name) gave, or the class of your own.
+TaskName = Union[str, "os.PathLike[str]", TaskInfo, "type[Task]"]
 
 
 @lru_cache(maxsize=None)
-def task_at(index: int) -> Task:
-    return Task(index)
+def task_at(index: int) -> TaskInfo:
+    return TaskInfo(index)
 
 
 @lru_cache(maxsize=None)
@@ -167,7 +170,7 @@ def listed(at: Callable[[int], R], struct: type[ctypes.Structure], call: Callabl
             yield at(index)
 
 
-def tasks() -> dict[str, Task]:
+def tasks() -> dict[str, TaskInfo]:
     """All tasks by name; empty without the simulation half."""
     return Listed(listed(task_at, _abi.rdm_task, lib.rdm_task_at, lib.rdm_task_count()), task)
 
@@ -177,26 +180,31 @@ def algos() -> dict[str, Algo]:
     return Listed(map(algo_at, range(lib.rdm_algo_count())), algo)
 
 
-def task(name: TaskName) -> Task:
+def task(name: TaskName) -> TaskInfo:
     """One task; case is ignored and '-' equals '_'. NotFoundError offers the nearest name."""
     return task_at(find(lib.rdm_task_find, task_name(name)))
 
 
 def task_name(task: TaskName) -> str:
-    """The name of a task that is given as its name, as Task, as a .task file, or as its id in Gymnasium (redman/BallRun-v0)."""
-    if isinstance(task, Task):
+    """The name of a task that is given as its name, as TaskInfo, as a .task file, as its id in Gymnasium (redman/BallRun-v0), or as
+    the class of a task in Python, which is then registered."""
+    if isinstance(task, TaskInfo):
         return task.name
+    if isinstance(task, type) and hasattr(task, "register"):
+        return task.register()
     if not isinstance(task, (str, os.PathLike)):
-        raise UsageError(f"task: the name of a task or a .task file, not {task!r}")
+        raise UsageError(f"task: the name of a task, a .task file or a subclass of redman.Task, not {task!r}")
     task = named("task", task)
     found = re.fullmatch(r"redman/(\w+)-v\d+", task)
     return found[1] if found else task
 
 
-def task_kept(task: TaskName) -> str:
-    """What makes it again in another process: its file, or its name."""
+def task_kept(task: TaskName) -> TaskName:
+    """What makes it again in another process: its class, its file, or its name."""
     name = task_name(task)
-    return os.path.abspath(os.fspath(task)) if not isinstance(task, Task) and is_file("task", task) else name
+    if isinstance(task, type):
+        return task
+    return os.path.abspath(os.fspath(task)) if not isinstance(task, TaskInfo) and is_file("task", task) else name
 
 
 def algo(name: str) -> Algo:

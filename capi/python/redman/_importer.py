@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, Callable, Optional, TypeVar, Union
 
 from . import _abi, _import_abi
-from ._discovery import Task, task_at
+from ._discovery import TaskInfo, task_at
 from ._error import ArgumentError, Error, UnsupportedError, error_of
 from ._files import must_exist
 from ._library import Handle, assign, encoded, lib, sized, text
@@ -17,7 +17,7 @@ from ._object import Object, created as object_created, object_at
 from ._robot import Note, Robot, created as robot_created, robot_at
 
 Source = Union[str, "os.PathLike[str]", bytes]
-Loaded = TypeVar("Loaded", Robot, Object, Task)
+Loaded = TypeVar("Loaded", Robot, Object, TaskInfo)
 
 
 @lru_cache(maxsize=None)
@@ -147,13 +147,13 @@ def load_object(path: Source) -> Object:
     return _once("object", path, None, lambda i: _alive(lib.rdm_object_info_at, _abi.rdm_object_info, i), object_at, make)
 
 
-def load_task(path: Source) -> Task:
+def load_task(path: Source) -> TaskInfo:
     """A task of a .task file, or of the bytes of one: its scene, observation, rewards and costs as text. It is registered under
     its name, and is a task like the library's own for all that takes one.
 
     A file that was loaded and has not changed is not read again; one that has takes the place of what it was.
     """
-    def make(old: Optional[int]) -> Task:
+    def make(old: Optional[int]) -> TaskInfo:
         if old is not None:
             lib.rdm_task_destroy(old)
         number = c_int32()

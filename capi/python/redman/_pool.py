@@ -18,7 +18,7 @@ from ._hold import LAST, Watch
 from ._library import (Handle, assign, check, encoded, failure, filled, int32, lib, raise_kept, raised, sized, text)
 from ._names import Hinted, keywords, nearest
 from ._options import Options, Value, read_settings, settings_of
-from ._paths import by_name, named, named_options
+from ._paths import by_name, named_options
 from ._rows import Array, Borrowed, DoubleArray, FloatArray, address, given, made, shape_of
 from ._spaces import box
 
@@ -51,7 +51,7 @@ def _struct(own: Mapping[str, Any]) -> _abi.rdm_pool_config:
     """The config of plain values."""
     config = sized(_abi.rdm_pool_config)
     check(lib.rdm_pool_config_init(byref(config), ctypes.sizeof(config)))
-    config.task = encoded(named("task", own["task"]))
+    config.task = encoded(_discovery.task_name(own["task"]))
     assign(config, {"num_envs": own["num_envs"], "seed": own["seed"], "num_threads": own["threads"]})
     config.autoreset = _autoreset(own["autoreset"])
     config.settings = settings_of(named_options(own["options"]), _kinds(own["task"]) if own["options"] else {})
@@ -173,7 +173,7 @@ class Pool(Hinted):
         self._p = self._handle.value
         self._spec = filled(_abi.rdm_spec, lib.rdm_pool_get_spec, self._p)
         self.spec = _abi.Spec(self._spec)
-        self.task: _discovery.Task = _discovery.task_at(self.spec.task)
+        self.task: _discovery.TaskInfo = _discovery.task_at(self.spec.task)
         self.num_envs = config.num_envs
         self.obs_dim, self.action_dim, self.cost_dim = self.spec.obs_dim, self.spec.action_dim, self.spec.cost_dim
         self.max_steps, self.control_dt = self.spec.max_steps, self.spec.control_dt

@@ -1,0 +1,437 @@
+"""Task: a task of your own in Python; its functions see all worlds of a pool at once, as rows of numpy arrays."""
+from __future__ import annotations
+
+import ctypes
+import re
+import weakref
+from ctypes import byref, c_int32, c_void_p
+from typing import Any, Callable, ClassVar, Mapping, NamedTuple, Optional, Sequence, Union
+
+import numpy as np
+
+from . import _abi
+from ._abi import OptionKind, ResultCode
+from ._error import ArgumentError, UsageError
+from ._library import check, encoded, lib, raised, sized
+from ._names import nearest
+from ._scene import SceneBuilder
+from ._worlds_rows import Worlds
+
+_VERDICT = np.dtype({"names": ["reward", "cost", "cost_raw", "terminated", "success"],
+                     "formats": ["f8", (f"f8", (_abi.RDM_MAX_COSTS,)), ("f8", (_abi.RDM_MAX_COSTS,)), "i4", "i4"],
+                     "offsets": [getattr(_abi.rdm_verdict, name).offset
+                                 for name in ("reward", "cost", "cost_raw", "terminated", "success")],
+                     "itemsize": ctypes.sizeof(_abi.rdm_verdict)})
+
+
+# rdm_task_rows with plain addresses, which are read in every call.
+class _Rows(ctypes.Structure):
+    _fields_ = [(name, of if of in (ctypes.c_uint32, c_int32) else c_void_p) for name, of, *_ in _abi.rdm_task_rows._fields_]
+
+
+_STREAM = "random stream"  # in the state of a task that draws
+
+_MANY = ctypes.CFUNCTYPE(c_int32, c_void_p, c_void_p, c_void_p)
+
+
+class Verdict(NamedTuple):
+    """What Task.judge returns of n worlds: each member is [n], or a number for all of them."""
+
+    reward: Any
+    cost: Mapping[str, Any] = {}  # by name, at least 0 (a flag counts 1); what is left out is 0
+    raw: Mapping[str, Any] = {}  # the measured value behind a cost; the cost itself where it is left out
+    terminated: Any = False  # the episode ends here
+    success: Any = False
+
+
+class Task:
+    """A task of your own: subclass it, and give the class wherever a task's name is taken.
+
+        class PushBall(redman.Task):
+            "Push a ball to the origin."
+            max_steps, action_dim = 100, 2
+            fields = {"position": (2, "m"), "velocity": (2, "m/s")}
+            costs = {"right": (5, "x above 0.5 m")}
+            options = {"mass": 0.2}
+
+            def scene(self, s):
+                self.ball = s.sphere("ball", 0.05, mass=s.option("mass"))
+                s.plane()
+
+            def reset(self, w):
+                w.set_body(self.ball, p=np.c_[w.uniform(-1, 1, 2), np.full(w.n, 0.05)])
+
+            def control(self, w, action):
+                w.push(self.ball, force=np.c_[action, np.zeros(w.n)])
+
+            def judge(self, w):
+                x = w.position(self.ball)
+                return redman.Verdict(-np.linalg.norm(x[:, :2], axis=1), {"right": x[:, 0] > 0.5})
+
+            def observe(self, w):
+                return w.position(self.ball)[:, :2], w.velocity(self.ball)[:, :2]
+
+        redman.check_task(PushBall)
+        run = redman.train(PushBall, steps=3e5)
+
+    w is a Worlds of n rows: all worlds of the pool, or those that are asked about; a row depends on its own world alone, which
+    check_task tries. What an episode has to remember is in `state`. What a function raises ends the episodes of the call's
+    worlds, and comes out of pool.step with its traceback.
+    """
+
+    name: ClassVar[str] = ""  # letters, digits, '_'; the class's own name in lower case unless it is set
+    max_steps: ClassVar[int] = 100  # control steps of an episode
+    action_dim: ClassVar[int] = 0  # entries of an action, each in [-1, 1]; required
+    fields: ClassVar[Mapping[str, Any]] = {}  # of an observation: name -> count, or (count, unit), or (count, unit, low, high)
+    costs: ClassVar[Any] = {}  # name -> limit on an episode's sum, None: no limit; or (limit, help). The first is the one learners limit
+    options: ClassVar[Mapping[str, Any]] = {}  # name -> default: a number, a bool, a text; or (low, high), drawn at each reset
+    state: ClassVar[Mapping[str, int]] = {}  # name -> count of numbers that a world keeps over an episode: Worlds.state
+    draws: ClassVar[bool] = False  # w.uniform and w.normal work in control and judge, too
+    defaults: ClassVar[Mapping[str, Any]] = {}  # options of agents that learn it
+    hold: ClassVar[Any] = None  # [action_dim] the action that holds still; None: 0
+    mean: ClassVar[Any] = None  # [action_dim] that a new policy starts from; None: 0
+    obs_limit: ClassVar[float] = 0.0  # entries of observations are cut at +- this; 0: none are
+
+    _number: ClassVar[Optional[int]] = None  # of the class itself, while it is registered
+
+    def scene(self, s: SceneBuilder) -> None:
+        """Makes the world, once a pool; keep the numbers of its parts in self."""
+
+    def reset(self, w: Worlds) -> None:
+        """Starts episodes: the worlds are as scene made them. w.uniform and w.normal draw."""
+
+    def control(self, w: Worlds, action: Any) -> None:
+        """Before a control step: from clipped actions [n][action_dim] to targets and pushes."""
+
+    def judge(self, w: Worlds) -> Any:
+        """After a control step: a Verdict, or the rewards [n] alone. w.step [n] counts from 1."""
+        raise NotImplementedError(f"{type(self).__name__}.judge: it gives the reward")
+
+    def observe(self, w: Worlds) -> Any:
+        """The observations: a dict by field, a sequence in the order of `fields`, or one array [n][entries]."""
+        raise NotImplementedError(f"{type(self).__name__}.observe: it gives the observation")
+
+    def __init__(self) -> None:
+        """No arguments: the library makes one for each pool."""
+
+    @classmethod
+    def register(cls) -> str:
+        """Adds the task to the list of tasks, once; its name. What takes a task by name calls it."""
+        if cls._number is None or "_number" not in cls.__dict__:
+            cls._number = _Description(cls).create()
+        return cls.task_name()
+
+    @classmethod
+    def unregister(cls) -> None:
+        """Takes it out of the list again, so that a changed class of that name can be registered; pools that have it keep it."""
+        if "_number" in cls.__dict__ and cls._number is not None:
+            check(lib.rdm_task_destroy(cls._number))
+            cls._number = None
+
+    @classmethod
+    def task_name(cls) -> str:
+        """The name under which it is registered."""
+        return cls.name or re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", cls.__name__).lower()
+
+
+class RowTask(Task):
+    """A task without bodies: what a world is, is its state, and step makes the next one. Subclass it as Task, with step in the
+    place of scene, control and judge.
+
+        class Cart(redman.RowTask):
+            action_dim, fields, costs = 1, {"position": 1, "velocity": 1}, {"fast": (1, "faster than 1 m/s")}
+            state = {"position": 1, "velocity": 1}
+
+            def reset(self, w):
+                w.state["position"] = w.uniform(-1, 1, 1)
+
+            def step(self, w, action):
+                s = w.state
+                s["velocity"] += 0.05 * action
+                s["position"] += 0.05 * s["velocity"]
+                return redman.Verdict(-s["position"][:, 0] ** 2, {"fast": np.abs(s["velocity"][:, 0]) > 1})
+
+            def observe(self, w):
+                return w.state["position"], w.state["velocity"]
+    """
+
+    def __init_subclass__(cls, **more: Any) -> None:
+        super().__init_subclass__(**more)
+        cls.state = {**cls.state, "last_action": cls.action_dim}
+
+    def scene(self, s: SceneBuilder) -> None:
+        """One body that nothing moves: an engine steps something."""
+        s.sphere("marker", 0.01, mass=0.01, weightless=True)
+
+    def step(self, w: Worlds, action: Any) -> Any:
+        """Makes the next state of the worlds, from clipped actions [n][action_dim]: a Verdict, or the rewards [n] alone."""
+        raise NotImplementedError(f"{type(self).__name__}.step: it makes the next state and gives the reward")
+
+    def control(self, w: Worlds, action: Any) -> None:
+        """Keeps the action for step."""
+        w.state["last_action"] = action
+
+    def judge(self, w: Worlds) -> Any:
+        """What step says."""
+        return self.step(w, w.state["last_action"].astype(np.float32))
+
+
+_registered: dict[str, type[Task]] = {}
+
+
+def own_task(name: str) -> Optional[type[Task]]:
+    """The class of a task in Python by its name."""
+    return _registered.get(name)
+
+
+def _pair(value: Any) -> bool:
+    return isinstance(value, (tuple, list)) and len(value) == 2 and all(isinstance(v, (int, float)) for v in value)
+
+
+class _Description:
+    """The rdm_task_def of a class, with all that it points at and the functions that the library calls."""
+
+    def __init__(self, kind: type[Task]) -> None:
+        self.kind, self.kept, self.made = kind, list[Any](), dict[Any, Task]()
+        self.where = kind.__name__
+        if not isinstance(kind.action_dim, int) or kind.action_dim < 1:
+            raise UsageError(f"{self.where}.action_dim: how many entries an action has, not {kind.action_dim!r}")
+        if not kind.fields:
+            raise UsageError(f"{self.where}.fields: what an observation has, as {{\"position\": (3, \"m\")}}")
+        self.fields = {name: self._field(name, row) for name, row in kind.fields.items()}
+        self.costs = self._costs()
+        self.state, self.state_bytes = self._state()
+        self.arrays: dict[tuple[int, Any], Any] = {}
+
+    def _field(self, name: str, row: Any) -> tuple[int, str, float, float]:
+        listed = [row] if isinstance(row, int) else list(row)
+        if not listed or len(listed) not in (1, 2, 4) or not isinstance(listed[0], int):
+            raise UsageError(f"{self.where}.fields[{name!r}]: a count, (count, unit) or (count, unit, low, high), not {row!r}")
+        low, high = (listed[2], listed[3]) if len(listed) == 4 else (0.0, 0.0)
+        return listed[0], str(listed[1]) if len(listed) > 1 else "1", float(low), float(high)
+
+    def _costs(self) -> dict[str, tuple[float, str]]:
+        given = self.kind.costs if isinstance(self.kind.costs, Mapping) else {name: None for name in self.kind.costs}
+        if not given:
+            raise UsageError(f"{self.where}.costs: at least one, as {{\"right\": (5, \"x above 0.5 m\")}}; None: without a limit")
+        out = {}
+        for name, row in given.items():
+            limit, told = row if isinstance(row, (tuple, list)) else (row, name)
+            out[name] = (-1.0 if limit is None else float(limit), str(told))
+        return out
+
+    def _state(self) -> tuple[Any, int]:
+        if not self.kind.state and not self.kind.draws:
+            return None, 0
+        rows: list[Any] = [(name, "f8", (int(count),)) for name, count in self.kind.state.items()]
+        if self.kind.draws:
+            rows.append((_STREAM, f"V{ctypes.sizeof(_abi.rdm_random)}"))
+        dtype = np.dtype(rows)
+        return dtype, dtype.itemsize
+
+    def create(self) -> int:
+        kind, d = self.kind, sized(_abi.rdm_task_def)
+        check(lib.rdm_task_def_init(byref(d), ctypes.sizeof(d)))
+        summary = (kind.__doc__ or "").strip().split("\n")[0] if kind.__doc__ is not Task.__doc__ else ""
+        d.name, d.summary = encoded(kind.task_name()), encoded(summary)
+        d.max_steps, d.action_dim, d.obs_limit = int(kind.max_steps), kind.action_dim, float(kind.obs_limit)
+        d.state_bytes, d.instance_bytes = self.state_bytes, ctypes.sizeof(c_void_p)
+        rows = (_abi.rdm_field_def * len(self.fields))()
+        for row, (name, (count, unit, low, high)) in zip(rows, self.fields.items()):
+            row.name, row.unit, row.count, row.low, row.high = encoded(name), encoded(unit), count, low, high
+        d.fields, d.num_fields = rows, len(rows)
+        costs = (_abi.rdm_cost_def * len(self.costs))()
+        for cost, (name, (limit, told)) in zip(costs, self.costs.items()):
+            cost.name, cost.help, cost.limit = encoded(name), encoded(told), limit
+        d.costs, d.num_costs = costs, len(costs)
+        options = (_abi.rdm_option_def * len(kind.options))()
+        for option, (key, value) in zip(options, kind.options.items()):
+            self._option(option, key, value)
+        d.options, d.num_options = options, len(options)
+        defaults = (_abi.rdm_option * len(kind.defaults))()
+        for default, (key, value) in zip(defaults, kind.defaults.items()):
+            default.key, default.text = encoded(key), encoded(_word(value))
+        d.defaults, d.num_defaults = defaults, len(defaults)
+        self.kept += [rows, costs, options, defaults]
+        for member in ("hold", "mean"):
+            given = getattr(kind, member)
+            if given is not None:
+                array = np.ascontiguousarray(given, np.float32)
+                if array.shape != (kind.action_dim,):
+                    raise ArgumentError(f"{self.where}.{member}: shape {array.shape} is not ({kind.action_dim},)")
+                setattr(d, member, array.ctypes.data)
+                self.kept.append(array)
+        kinds: dict[str, Any] = {field[0]: field[1] for field in _abi.rdm_task_def._fields_}
+        for member in ("build", "reset_many", "control_many", "judge_many", "observe_many"):
+            call = self._guarded(member.replace("_many", ""), getattr(self, "_" + member))
+            function = kinds[member](call) if member == "build" else _MANY(call)
+            setattr(d, member, ctypes.cast(function, kinds[member]))
+            self.kept.append(function)
+        out = c_int32()
+        check(lib.rdm_task_create(byref(out), byref(d)))
+        _descriptions[out.value] = self  # the library calls these functions as long as a pool has the task
+        _registered[kind.task_name()] = kind
+        return out.value
+
+    def _option(self, row: Any, key: str, value: Any) -> None:
+        row.key, row.help = encoded(key), encoded(f"of {self.where}")
+        if _pair(value):
+            row.kind, row.choices, row.text = OptionKind.NUMBER, b"a..b", encoded(f"{float(value[0])!r}..{float(value[1])!r}")
+            row.number = (value[0] + value[1]) / 2
+        elif isinstance(value, bool):
+            row.kind, row.number = OptionKind.FLAG, int(value)
+        elif isinstance(value, int):
+            row.kind, row.number = OptionKind.INTEGER, value
+        elif isinstance(value, float):
+            row.kind, row.number = OptionKind.NUMBER, value
+        elif isinstance(value, str):
+            row.kind, row.text = OptionKind.TEXT, encoded(value)
+        else:
+            raise UsageError(f"{self.where}.options[{key!r}]: a number, a bool, a text or (low, high), not {value!r}")
+        row.low, row.high = (-2147483648, 2147483647) if row.kind == OptionKind.INTEGER else (-1e9, 1e9)
+
+    def _guarded(self, name: str, function: Callable[..., None]) -> Callable[..., int]:
+        def call(user: Any, *arguments: Any) -> int:
+            try:
+                function(*arguments)
+                return 0
+            except BaseException as error:
+                raised.append((f"{self.where}.{name}", error))
+                return int(ResultCode.INTERNAL)
+        return call
+
+    # --- what the library calls
+
+    def _build(self, scene: Any, instance: Any) -> None:
+        options = {key: self._value(scene, key, default) for key, default in self.kind.options.items()}
+        task = self.kind()
+        s = SceneBuilder(scene, options)
+        try:
+            task.scene(s)
+        finally:
+            s._end()
+        # the same options make the same scene: one object for all pools of them
+        number = self.made.setdefault(tuple(options.values()), task)
+        if number is not task:
+            number.__dict__.update(task.__dict__)
+        c_void_p.from_address(instance).value = list(self.made).index(tuple(options.values())) + 1
+
+    def _value(self, scene: Any, key: str, default: Any) -> Any:
+        if isinstance(default, str):
+            out = ctypes.c_char_p()
+            check(lib.rdm_scene_get_text(scene, encoded(key), byref(out)))
+            return (out.value or b"").decode()
+        low, high = ctypes.c_double(), ctypes.c_double()
+        if _pair(default):
+            check(lib.rdm_scene_get_range(scene, encoded(key), byref(low), byref(high)))
+            return low.value, high.value
+        check(lib.rdm_scene_get_number(scene, encoded(key), byref(low)))
+        return type(default)(low.value)
+
+    def _task(self, instance: int) -> Task:
+        at = c_void_p.from_address(instance).value or 0
+        return list(self.made.values())[at - 1]
+
+    def _rows(self, at: int) -> tuple[Worlds, Any]:
+        rows = _Rows.from_address(at)
+        return Worlds(rows, self.state, self._array), rows
+
+    def _stream(self) -> tuple[int, int]:
+        """Offset of the stream in a state, and the bytes of a state."""
+        return self.state.fields[_STREAM][1], self.state_bytes
+
+    def _array(self, address: int, n: int, dtype: Any, width: int = 0) -> Any:
+        """Rows of the library's memory, which it uses again and again."""
+        key = address, dtype
+        known = self.arrays.get(key)
+        if known is None or len(known) < n:
+            size = np.dtype(dtype).itemsize * max(width, 1) * n
+            memory: Any = (ctypes.c_char * size).from_address(address)
+            known = np.frombuffer(memory, dtype)
+            if width:
+                known = known.reshape(n, width)
+            if len(self.arrays) > 64:
+                self.arrays.clear()
+            self.arrays[key] = known
+        return known[:n]
+
+    def _reset_many(self, instance: int, at: int) -> None:
+        w, rows = self._rows(at)
+        self._task(instance).reset(w)
+        if self.kind.draws:
+            w._keep_streams(rows.states, *self._stream())
+
+    def _control_many(self, instance: int, at: int) -> None:
+        w, rows = self._rows(at)
+        if self.kind.draws:
+            w._draw_from(rows.states, *self._stream())
+        self._task(instance).control(w, self._array(rows.actions, w.n, np.float32, self.kind.action_dim))
+
+    def _judge_many(self, instance: int, at: int) -> None:
+        w, rows = self._rows(at)
+        w.step = self._array(rows.steps, w.n, np.int32)
+        if self.kind.draws:
+            w._draw_from(rows.states, *self._stream())
+        verdict = self._task(instance).judge(w)
+        out = self._verdict_columns(rows.verdicts, w.n)
+        if not isinstance(verdict, Verdict):
+            verdict = Verdict(verdict)
+        out["reward"][:w.n] = verdict.reward
+        out["terminated"][:w.n], out["success"][:w.n] = verdict.terminated, verdict.success
+        for name, value in verdict.cost.items():
+            k = self._column(name)
+            out["cost"][:w.n, k] = value
+            if name not in verdict.raw:
+                out["cost_raw"][:w.n, k] = value
+        for name, value in verdict.raw.items():
+            out["cost_raw"][:w.n, self._column(name)] = value
+
+    def _verdict_columns(self, address: int, n: int) -> dict[str, Any]:
+        """The members of at least n verdicts as arrays."""
+        known = self.arrays.get((address, "columns"))
+        if known is None or len(known["reward"]) < n:
+            whole = self._array(address, n, _VERDICT)
+            known = self.arrays[address, "columns"] = {name: whole[name] for name in _VERDICT.names or ()}
+        return known
+
+    def _column(self, name: str) -> int:
+        for k, known in enumerate(self.costs):
+            if known == name:
+                return k
+        raise ArgumentError(f"{self.where}.judge: {name!r} is no cost of it{nearest(name, self.costs)}")
+
+    def _observe_many(self, instance: int, at: int) -> None:
+        w, rows = self._rows(at)
+        given = self._task(instance).observe(w)
+        width = sum(field[0] for field in self.fields.values())
+        out = self._array(rows.obs, w.n, np.float32, width)
+        if isinstance(given, Mapping):
+            if given.keys() != self.fields.keys():
+                odd = sorted(set(given) ^ set(self.fields))
+                raise ArgumentError(f"{self.where}.observe: {', '.join(map(repr, odd))} should be both in fields and in what it returns")
+            given = [given[name] for name in self.fields]
+        if isinstance(given, np.ndarray):
+            if given.shape != (w.n, width):
+                raise ArgumentError(f"{self.where}.observe: shape {given.shape} is not ({w.n}, {width})")
+            out[:] = given
+            return
+        if len(given) != len(self.fields):
+            raise ArgumentError(f"{self.where}.observe: {len(given)} arrays, fields has {len(self.fields)}")
+        column = 0
+        for array, (name, (count, *_)) in zip(given, self.fields.items()):
+            shown = np.asarray(array)
+            try:
+                out[:, column:column + count] = shown if shown.ndim != 1 or count != 1 else shown[:, None]
+            except ValueError:
+                raise ArgumentError(f"{self.where}.observe: field {name!r} has shape {shown.shape}, not ({w.n}, {count})") from None
+            column += count
+
+
+_descriptions: dict[int, _Description] = {}
+
+
+def _word(value: Any) -> str:
+    """A value of an option as a text."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return ",".join(map(str, value)) if isinstance(value, (list, tuple)) else str(value)
