@@ -87,7 +87,9 @@ const CarriedDemo kCarriedDemos[] = {
   if(NOT REDMAN_VIEWER STREQUAL "AUTO")
     set(three "${REDMAN_VIEWER}")
   endif()
-  file(GLOB pages CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/examples/redman/web/*.html ${PROJECT_SOURCE_DIR}/examples/redman/web/*.js)
+  file(GLOB pages CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/examples/redman/web/*.html
+       ${PROJECT_SOURCE_DIR}/examples/redman/web/*.js ${PROJECT_SOURCE_DIR}/examples/redman/web/*.css
+       ${PROJECT_SOURCE_DIR}/examples/redman/web/*.txt)
   set(RDM_WEB "")
   if(three)
     if(NOT EXISTS "${three}")

@@ -11,16 +11,14 @@ const here = name => text(path.join(__dirname, name));
 const script = source => source.replace(/<\/(script)/gi, '<\\/$1').replace(/<!--/g, '<\\!--');
 
 const golden = text(path.join(root, 'tests/golden/tasks.txt')).split('\n').filter(l => l && l[0] !== '#').map(l => l.split(' '));
-const licence = /<!--\s*\n([\s\S]*?)-->/.exec(text(path.join(root, 'examples/redman/web/player.html')))[1].trim();
 const parts = {
-  'three licence': licence,
   three: script(text(three)),
-  'scene.js': script(text(path.join(root, 'examples/redman/web/scene.js'))),
   'redman.js': script(text(path.join(build, 'redman.js'))),
   wasm: zlib.gzipSync(fs.readFileSync(path.join(build, 'redman.wasm')), { level: 9 }).toString('base64'),
   golden: JSON.stringify(golden),
 };
-for (const name of ['shapes.js', 'engine.js', 'worker.js', 'page.js']) parts[name] = script(here(name));
+for (const name of ['engine.js', 'worker.js', 'page.js']) parts[name] = script(here(name));
+for (const name of ['page.css', 'scene.js', 'shapes.js', 'push.js', 'live.js', 'licence.txt']) parts[name] = script(text(path.join(root, 'examples/redman/web', name)));
 fs.mkdirSync(out, { recursive: true });
 fs.writeFileSync(path.join(out, 'index.html'), here('page.html').replace(/\{\{(.*?)\}\}/g, (_, name) => {
   if (!(name in parts)) throw new Error('the page asks for ' + name);

@@ -7,10 +7,6 @@ redman.ready = (async () => {
   const bytesOf = base64 => Uint8Array.from(atob(base64), c => c.charCodeAt(0));
   const unpacked = async bytes =>
     new Uint8Array(await new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream('gzip'))).arrayBuffer());
-  const number = v => (Number.isInteger(v) ? String(v) : Math.abs(v) >= 1000 ? v.toFixed(0) : Math.abs(v) >= 10 ? v.toFixed(1) : v.toFixed(2));
-  const thousands = v => Math.round(v).toString().replace(/\B(?=(\d{3})+$)/g, '\u2009');
-  const ink = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-  const words = name => name.replace(/_/g, ' ');
   const sleep = () => new Promise(r => setTimeout(r));
 
   const wasm = await unpacked(bytesOf($('wasm').textContent));
@@ -19,21 +15,11 @@ redman.ready = (async () => {
   $('about').textContent = `redman ${about.version} in WebAssembly, ${thousands(wasm.length / 1024)} kB`;
 
   let task = '', actor = 'zero', world = null, view = null, model = null, playing = false, owed = 0, before = 0, seed = 1;
-  let grabbed = null, learned = null, learnedTask = '', played = 0, contactPeak = 1e-6, shown = '';
+  let learned = null, learnedTask = '', played = 0, contactPeak = 1e-6, shown = '';
   const finished = { count: 0, success: 0 }, timed = { ms: 0, steps: 0 };  // of the last hundred or so steps
   const contacts = { xyz: new Float32Array(3 * 128), force: new Float32Array(3 * 128), unit: 1, end: [0], most: 128 };
 
   // ---- what is shown ----
-  function costRows() {
-    $('costs').replaceChildren(...world.costs.map(c => {
-      const row = document.createElement('div');
-      row.className = 'cost';
-      row.title = c.help;
-      row.innerHTML = '<div class="line"><span></span><span class="value number"></span></div>' + (c.limit >= 0 ? '<div class="bar"><i></i><u></u></div>' : '');
-      row.querySelector('span').textContent = words(c.name);
-      return row;
-    }));
-  }
   function showNumbers(n) {
     $('return').textContent = number(n.ret);
     $('reward').textContent = number(n.reward);
@@ -41,12 +27,7 @@ redman.ready = (async () => {
     $('where').textContent = `step ${n.step} of ${world.steps} · ${(n.step * world.dt).toFixed(2)} s`;
     const success = finished.count ? `, ${(100 * finished.success / finished.count).toFixed(0)}% with success` : '';
     $('episodes').textContent = `${finished.count} finished${success}`;
-    world.costs.forEach((c, k) => {
-      const row = $('costs').children[k];
-      row.querySelector('.value').textContent = c.limit >= 0 ? `${number(n.sum[k])} of ${number(c.limit)}` : number(n.sum[k]);
-      row.classList.toggle('over', c.limit >= 0 && n.sum[k] > c.limit);
-      if (c.limit >= 0) row.querySelector('i').style.width = Math.min(100, n.sum[k] ? 80 * (c.limit > 0 ? n.sum[k] / c.limit : 2) : 0) + '%';
-    });
+    showCosts($('costs'), world.costs, n.sum);
   }
   function showState(text, good) {
     $('state').hidden = !text;
@@ -105,7 +86,7 @@ redman.ready = (async () => {
       try {
         model = modelOf(world.shapes, engine.poses(world.shapes.length));
         view = openScene(canvas, model, contacts);
-        view.add(arrow);
+        view.add(mouse.arrow);
         view.setContacts($('contacts').checked);
       } catch (e) {
         $('message').textContent = 'This browser shows no WebGL here (' + e.message + '); the numbers work all the same.';
@@ -119,7 +100,7 @@ redman.ready = (async () => {
       return b;
     }));
     look(/^(hand_over|catch)/.test(task) ? 'close' : 'front');
-    costRows();
+    costRows($('costs'), world.costs);
     $('summary').textContent = `${world.summary}. ${world.obs} observations, ${world.actions} actions, ${Math.round(1 / world.dt)} steps in a second.`;
     $('task').value = name;
   }
@@ -144,7 +125,7 @@ redman.ready = (async () => {
     showActors();
   }
   function choose(name) {
-    grabbed = null;
+    mouse.end();
     actor = 'zero';
     open(name);
     act(['trained', 'learned', 'demonstration', 'zero'].find(can));
@@ -181,108 +162,21 @@ redman.ready = (async () => {
   }
 
   // ---- the mouse pushes ----
-  const arrow = new THREE.ArrowHelper(new THREE.Vector3(0, 0, 1), new THREE.Vector3(), 0.1, '#e0102a');
-  arrow.visible = false;
+  const mouse = openPush($('view'), () => view && { view, can: i => !world.shapes[i].fixed, text: i => world.shapes[i].name }, () => {
+    if (!mouse.grabbed) pose();
+  });
   const newton = () => Math.pow(10, Number($('strength').value));
   const showNewton = () => { const v = newton(); $('newton').textContent = (v < 10 ? v.toFixed(1) : v.toFixed(0)) + ' N'; };
-  const spot = e => {
-    const r = $('view').getBoundingClientRect();
-    return [(e.clientX - r.left) / r.width * 2 - 1, 1 - (e.clientY - r.top) / r.height * 2];
-  };
   function push() {
-    if (!grabbed) return;
+    if (!mouse.grabbed) return;
     pose();
-    grabbed.object.updateMatrixWorld();
-    const at = grabbed.object.localToWorld(grabbed.local.clone()), pull = grabbed.to.clone().sub(at);
-    const full = 0.2 * view.extent, force = pull.clone().multiplyScalar(newton() / Math.max(full, pull.length()));
-    engine.push(grabbed.index, force.x, force.y, force.z);
-    grabbed.force = force.length();
-    arrow.visible = pull.length() > 1e-4;
-    arrow.position.copy(at);
-    arrow.setDirection(pull.clone().normalize());
-    arrow.setLength(Math.max(pull.length(), 1e-3), 0.03 * view.extent, 0.02 * view.extent);
+    const force = mouse.pull(newton());
+    engine.push(mouse.grabbed.index, force.x, force.y, force.z);
   }
-  $('view').addEventListener('pointerdown', e => {
-    if (!view || e.button !== 0 || e.shiftKey || e.target !== $('scene')) return;
-    const hit = view.hitAt(...spot(e));
-    if (!hit || world.shapes[hit.index].fixed) return;
-    const object = view.objects[hit.index];
-    grabbed = { index: hit.index, object, local: object.worldToLocal(hit.point.clone()), to: hit.point, from: hit.point.clone(), force: 0 };
-    $('scene').setPointerCapture(e.pointerId);
-    e.stopPropagation();  // the view does not turn
-  }, true);
-  $('view').addEventListener('pointermove', e => {
-    const label = $('name');
-    if (grabbed) {
-      grabbed.to = view.pointAt(...spot(e), grabbed.from);
-      e.stopPropagation();
-    }
-    const hit = !view || (e.buttons && !grabbed) ? null : grabbed || view.hitAt(...spot(e)), r = $('view').getBoundingClientRect();
-    label.hidden = !hit;
-    $('view').classList.toggle('over', !!hit && !world.shapes[hit.index].fixed);
-    if (!hit) return;
-    label.textContent = world.shapes[hit.index].name + (grabbed && grabbed.force ? ' ' + grabbed.force.toFixed(1) + ' N' : '');
-    label.style.left = Math.min(e.clientX - r.left + 14, r.width - 150) + 'px';
-    label.style.top = e.clientY - r.top + 10 + 'px';
-  }, true);
-  for (const end of ['pointerup', 'pointercancel', 'pointerleave'])
-    $('view').addEventListener(end, e => {
-      if (end === 'pointerleave' && grabbed) return;
-      grabbed = null;
-      arrow.visible = false;
-      $('name').hidden = true;
-      pose();
-    }, true);
 
   // ---- training ----
   let worker = null, run = 0;
   const curve = { steps: [], ret: [], cost: [] };
-  function plot(canvas, xs, ys, limit, title, color) {
-    const ratio = window.devicePixelRatio || 1, w = canvas.clientWidth, h = canvas.clientHeight;
-    canvas.width = Math.round(w * ratio);
-    canvas.height = Math.round(h * ratio);
-    const g = canvas.getContext('2d');
-    g.setTransform(ratio, 0, 0, ratio, 0, 0);
-    g.clearRect(0, 0, w, h);
-    const left = 46, top = 18, right = w - 4, bottom = h - 16;
-    g.font = '11px system-ui, "DejaVu Sans", sans-serif';
-    g.fillStyle = ink('--soft');
-    g.textBaseline = 'top';
-    g.fillText(title, left, 2);
-    let low = Math.min(...ys, limit ?? Infinity), high = Math.max(...ys, limit ?? -Infinity);
-    if (!ys.length) low = 0, high = 1;
-    if (limit !== null) low = Math.min(low, 0);
-    if (high - low < 1e-9) high = low + 1;
-    const most = Math.max(xs[xs.length - 1] || 1, 1), x = v => left + v / most * (right - left), y = v => bottom - (v - low) / (high - low) * (bottom - top);
-    g.strokeStyle = ink('--edge');
-    g.beginPath();
-    for (const v of [low, high]) g.moveTo(left, Math.round(y(v)) + 0.5), g.lineTo(right, Math.round(y(v)) + 0.5);
-    g.stroke();
-    g.textAlign = 'right';
-    g.textBaseline = 'middle';
-    if (ys.length) for (const v of [low, high]) g.fillText(number(v), left - 6, y(v));
-    g.textBaseline = 'bottom';
-    if (ys.length) g.fillText(thousands(most) + ' steps', right, h);
-    if (limit !== null) {
-      g.strokeStyle = g.fillStyle = ink('--bad');
-      g.setLineDash([5, 4]);
-      g.beginPath();
-      g.moveTo(left, y(limit));
-      g.lineTo(right, y(limit));
-      g.stroke();
-      g.setLineDash([]);
-      const above = y(limit) - top > 14;
-      g.textBaseline = above ? 'bottom' : 'top';
-      g.fillText('limit ' + number(limit), right, y(limit) + (above ? -1 : 3));
-    }
-    g.textAlign = 'left';
-    g.strokeStyle = color;
-    g.lineWidth = 2;
-    g.lineJoin = 'round';
-    g.beginPath();
-    ys.forEach((v, i) => g.lineTo(x(xs[i]), y(v)));
-    g.stroke();
-  }
   function drawCurves() {
     $('return-curve').hidden = $('cost-curve').hidden = !curve.task;
     if (!curve.task) return;

@@ -269,12 +269,12 @@ function openScene(canvas, model, contacts) {
     renderer.render(world, camera);
   }
 
-  // x, y in [-1, 1]. What is there: {index: of the node, name, point: m}, or null.
+  // x, y in [-1, 1]. What is there: {index: of the node, object, name, point: m}, or null.
   const ray = new THREE.Raycaster();
   function hitAt(x, y) {
     ray.setFromCamera(new THREE.Vector2(x, y), camera);
     const hit = ray.intersectObjects(objects.filter(o => o), false)[0];
-    return hit ? { index: objects.indexOf(hit.object), name: hit.object.name, point: hit.point } : null;
+    return hit ? { index: objects.indexOf(hit.object), object: hit.object, name: hit.object.name, point: hit.point } : null;
   }
   // The point there as far away as `through` is.
   function pointAt(x, y, through) {

@@ -1,5 +1,5 @@
-// The scene as page.c tells it, laid out as openScene wants it: a mesh for each shape, and tracks of one moment that
-// pose() overwrites.
+// Worlds of shapes, as page.c and `redman view` tell them, laid out as openScene wants it: a mesh for each shape, a node for
+// each of each world, and tracks of one moment that pose() overwrites.
 'use strict';
 
 // Kinds of enum rdm_shape_kind.
@@ -52,45 +52,58 @@ function box(x, y, z) {
     }
   return { position, normal, index };
 }
-function meshOf({ kind, size }) {
+function meshOf({ kind, size, mesh }) {
+  if (mesh) return mesh;
   switch (kind) {
     case SPHERE: return capsule(size[0], 0);
     case ELLIPSOID: return capsule(1, 0, size);
     case CAPSULE: return capsule(size[0], size[1]);
     case CYLINDER: return cylinder(size[0], size[1]);
     case PLANE: return box(1, 1, 1e-3);  // openScene has a floor of its own
-    default: return box(...size);        // of a hull too: the corners of its box
+    default: return box(...size);        // of a hull that brings no mesh: its box
   }
 }
 
-// {json, array} for openScene, and pose(rows of seven numbers).
-function modelOf(shapes, poses) {
+// {json, array} for openScene, and pose(rows of seven numbers): of all shapes of the worlds, one after the other, or of those that
+// move alone. place(world) is where on the ground one stands; a plane is drawn once.
+function modelOf(shapes, poses, worlds = 1, place = () => [0, 0]) {
   const arrays = [], linear = v => (v <= 10 ? v / 255 / 12.92 : Math.pow((v / 255 + 0.055) / 1.055, 2.4));
   const keep = a => arrays.push(a) - 1;
   const json = { meshes: [], materials: [], nodes: [], accessors: [{ count: 1 }], animations: [{ samplers: [{ input: 0 }], channels: [] }] };
   keep(new Float32Array(1));
-  const tracks = [];
+  const tracks = [], clip = json.animations[0];
   shapes.forEach((shape, i) => {
     const mesh = meshOf(shape);
     json.materials.push({ pbrMetallicRoughness: { baseColorFactor: [...shape.color.map(linear), 1] } });
     json.meshes.push({ primitives: [{
       attributes: { POSITION: keep(new Float32Array(mesh.position)), NORMAL: keep(new Float32Array(mesh.normal)) },
       indices: keep(new Uint16Array(mesh.index)), material: i }] });
-    const translation = new Float32Array(poses.subarray(7 * i, 7 * i + 3)), rotation = new Float32Array(poses.subarray(7 * i + 3, 7 * i + 7));
-    json.nodes.push({ name: shape.name, mesh: i, extras: { plane: shape.kind === PLANE }, translation: Array.from(translation), rotation: Array.from(rotation) });
-    if (shape.fixed) return;
-    const clip = json.animations[0];
-    for (const [path, output] of [['translation', translation], ['rotation', rotation]])
-      clip.channels.push({ sampler: clip.samplers.push({ input: 0, output: keep(output) }) - 1, target: { node: i, path } });
-    tracks.push({ i, translation, rotation });
   });
+  for (let w = 0; w < worlds; ++w)
+    shapes.forEach((shape, i) => {
+      const at = 7 * (w * shapes.length + i), [x, y] = place(w);
+      const translation = new Float32Array(poses.subarray(at, at + 3)), rotation = new Float32Array(poses.subarray(at + 3, at + 7));
+      translation[0] += x;
+      translation[1] += y;
+      const node = { name: shape.name, extras: { plane: shape.kind === PLANE }, translation: Array.from(translation), rotation: Array.from(rotation) };
+      if (w === 0 || shape.kind !== PLANE) node.mesh = i;
+      const number = json.nodes.push(node) - 1;
+      if (shape.fixed) return;
+      for (const [path, output] of [['translation', translation], ['rotation', rotation]])
+        clip.channels.push({ sampler: clip.samplers.push({ input: 0, output: keep(output) }) - 1, target: { node: number, path } });
+      tracks.push({ at, x, y, translation, rotation });
+    });
   return {
     json, array: i => arrays[i],
     pose(rows) {
-      for (const { i, translation, rotation } of tracks) {
-        translation.set(rows.subarray(7 * i, 7 * i + 3));
-        rotation.set(rows.subarray(7 * i + 3, 7 * i + 7));
-      }
+      const moving = rows.length === 7 * tracks.length;
+      tracks.forEach(({ at, x, y, translation, rotation }, k) => {
+        const from = moving ? 7 * k : at;
+        translation.set(rows.subarray(from, from + 3));
+        rotation.set(rows.subarray(from + 3, from + 7));
+        translation[0] += x;
+        translation[1] += y;
+      });
     },
   };
 }
