@@ -129,6 +129,7 @@ ${RDM_WEB}    {nullptr, nullptr},
   if(WIN32)
     target_compile_definitions(redman_tool_parts PUBLIC _FILE_OFFSET_BITS=64 _USE_MATH_DEFINES)
     target_link_options(redman_tool_parts PUBLIC -static)
+    target_link_libraries(redman_tool_parts PUBLIC ws2_32 shell32)
   endif()
   if(TARGET Qhull::qhull_r)
     target_compile_definitions(redman_tool_parts PRIVATE REDMAN_QHULL=1)

@@ -5,7 +5,7 @@ set -u
 root=$1 table=$2
 cd "$root" || exit 1
 posix='windows\.h|malloc\.h|unistd\.h|fcntl\.h|dirent\.h|pthread\.h|sched\.h|[eix]mmintrin\.h|wasm_simd128\.h|cpuid\.h|sys/[a-z]+\.h'
-tool='CLI/CLI\.hpp|nlohmann/json\.hpp|png\.h|libqhull_r/qhull_ra\.h|hacdHACD\.h'
+tool='CLI/CLI\.hpp|nlohmann/json\.hpp|png\.h|libqhull_r/qhull_ra\.h|arpa/inet\.h|netinet/[a-z]+\.h|hacdHACD\.h'
 
 # includes FILES...: "file target" for each include line, target with its quotes or brackets.
 includes() {
