@@ -25,7 +25,7 @@ windows|the recorded hashes, the DLL and the tool under wine|arithmetic, system 
 browser|the library as WebAssembly, in Node and in a page|arithmetic, examples/browser
 languages|the program of `examples/` in every language; the headers in four generators of bindings|the ABI
 packages|`.deb` files and the wheel in clean roots, the reference, the ABI|packages, the ABI
-pages|playback and reports in a browser without a window|the tool's pages
+pages|playback, reports and `view` in a browser without a window|the tool's pages
 embedded|policies as C source on Cortex-M processors under qemu|export --c
 physics|the truth table, the bundled policies at other substeps|the engine
 slow|learning and long random runs|before a release
@@ -296,7 +296,7 @@ case $mode in
     configure dev
     cmake --build --preset dev -j "$(nproc)" --target redman_tool tests_tool >&2 || die "preset dev could not be built: see above"
     mkdir -p build/pages
-    PAGES=$PWD/build/pages run_tests dev -R '^test_tool_(pages|events|solid)$'
+    PAGES=$PWD/build/pages run_tests dev -R '^test_tool_(pages|view|events|solid)$'
     ;;
   browser)
     # The page of cmake/browser.sh in headless Chromium, as a file, and the library in Node; build/browser keeps what it looks like.

@@ -18,6 +18,7 @@ void add_baseline(CLI::App& app, Run& run);
 void add_rollout(CLI::App& app, Run& run);
 void add_plan(CLI::App& app, Run& run);
 void add_render(CLI::App& app, Run& run);
+void add_view(CLI::App& app, Run& run);
 void add_bench(CLI::App& app, Run& run);
 void add_info(CLI::App& app, Run& run);
 void add_export(CLI::App& app, Run& run);

@@ -159,6 +159,7 @@ constexpr Command kCommands[] = {
     {"baseline", add_baseline, kPlay, "redman baseline --task ball_run --policy hold --policy random"},
     {"bench", add_bench, kPlay, "redman bench step --task hand_over_safe_finger --envs 64"},
     {"render", add_render, kLook, "redman render --policy runs/first --html episode.html"},
+    {"view", add_view, kLook, "redman view --task hand_over_safe_finger --policy trained --open"},
     {"plot", add_plot, kLook, "redman plot runs/first --out curve.svg"},
     {"report", add_report, kLook, "redman report runs --html report.html"},
     {"compare", add_compare, kLook, "redman compare examples/results/runs.csv --where part=command"},

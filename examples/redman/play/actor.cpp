@@ -273,8 +273,9 @@ void Actor::replay(redman::Pool& pool, const uint8_t* mask) {
   }
 }
 
-void Actor::act(redman::Pool& pool, const uint8_t* mask) {
+void Actor::act(redman::Pool& pool, const uint8_t* mask, const std::function<void()>& change) {
   propose(pool, mask);
+  if (change) change();
   if (shielded_) shielded_->act(pool, mask);
 }
 

@@ -1,6 +1,7 @@
 // Who acts in a pool: a policy file, a planner, a demonstration, a recorded rollout, or one of the baselines
 // zero, hold, random.
 #pragma once
+#include <functional>
 #include <optional>
 #include <redman/plan.hpp>
 #include <redman/sense.hpp>
@@ -61,8 +62,8 @@ class Actor {
   // Episodes begin anew in the worlds of the mask [num_envs] (null: all): a decision is due there.
   void restart(const uint8_t* mask = nullptr);
   // Fills the action rows of the worlds in the mask. A policy decides every action_repeat control steps of
-  // its own, whatever the pool's step is.
-  void act(redman::Pool& pool, const uint8_t* mask = nullptr);
+  // its own, whatever the pool's step is. `change` may lay other rows over its own, before the shield looks at them.
+  void act(redman::Pool& pool, const uint8_t* mask = nullptr, const std::function<void()>& change = {});
   // Failure when an episode of a recording did not end where it ended when it was recorded.
   void check_ends() const;
   const PlanningCost& planning() const { return planning_; }

@@ -157,6 +157,7 @@ void Recorder::after(size_t env, size_t episode) {
   ++step_[env];
   if (!pool_.terminated()[env] && !pool_.truncated()[env]) return;
   take(env, false, true);
+  episodes_.resize(std::max(episodes_.size(), episode + 1));
   episodes_[episode] = {scratch_.size(), static_cast<uint64_t>(step_[env]), 0};
   std::string all;
   for (std::string& column : waiting_[env]) {
@@ -165,6 +166,12 @@ void Recorder::after(size_t env, size_t episode) {
   }
   scratch_.write(all);
   step_[env] = 0;
+}
+
+void Recorder::rewind(size_t env, int32_t steps) {
+  for (size_t c = 0; c < columns_.size(); ++c)
+    if (!columns_[c].of_episode) waiting_[env][c].resize(static_cast<size_t>(steps) * columns_[c].bytes);
+  step_[env] = steps;
 }
 
 template <class Use>

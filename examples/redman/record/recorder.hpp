@@ -23,7 +23,7 @@ class Recorder {
  public:
   // For the file of this name: named columns of text where it ends in .csv, else arrays of numpy (.npz).
   // `states`: the world's state before each step too. `labels`: the action before noise, as label() finds
-  // it. Failure when the file cannot be written. Borrows the pool.
+  // it. More episodes than that grow. Failure when the file cannot be written. Borrows the pool.
   Recorder(const std::string& path, const redman::Pool& pool, size_t episodes, bool states,
            bool labels = false);
 
@@ -31,6 +31,8 @@ class Recorder {
 
   void before(size_t env, size_t episode);  // the actions stand in the pool, the step is to come
   void after(size_t env, size_t episode);   // the step is done
+  // The episode that world env plays goes back to its first `steps` steps.
+  void rewind(size_t env, int32_t steps);
   // Writes the file; returns the number of steps.
   uint64_t finish(const RecordNote& note);
 
