@@ -6,17 +6,17 @@ from typing import TYPE_CHECKING, Any
 from ._discovery import TaskName, task_name
 
 if TYPE_CHECKING:
-    from .gym import Env, VectorEnv
+    from . import gym
 
 
-def make(task: TaskName, **settings: Any) -> Env:
+def make(task: TaskName, **settings: Any) -> gym.Env:
     """One environment of Gymnasium's form, redman.gym.Env(task, ...), with or without Gymnasium: reset gives (obs, info), step five
     values."""
     from .gym import Env
     return Env(task_name(task), **settings)
 
 
-def make_vec(task: TaskName, num_envs: int = 1, **settings: Any) -> VectorEnv:
+def make_vec(task: TaskName, num_envs: int = 1, **settings: Any) -> gym.VectorEnv:
     """A vector environment of Gymnasium's form, redman.gym.VectorEnv(task, num_envs, ...)."""
     from .gym import VectorEnv
     return VectorEnv(task_name(task), num_envs, **settings)
