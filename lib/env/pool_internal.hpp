@@ -165,6 +165,8 @@ struct Pool::Impl : ResolvedPoolConfig {
   void pick(F&& wanted);
   template <class F>
   void call_rows(F&& f);
+  template <class F>
+  void drop_failed(F&& failed);
   // f(begin, end, block) for runs of worlds that are all of them together, f(env, block) for every world, on
   // the workers. Both rethrow the error of the lowest world when all is done. `whole`: one run for each
   // block, for worlds that are named by a mask: their groups are fullest in long runs.

@@ -70,26 +70,39 @@ void Pool::Impl::call_rows(F&& f) {
   }
 }
 
-// Episodes of the rows, which pick has named: rows that could not begin keep their codes.
-void Pool::Impl::begin_rows() {
+// The rows that are well go on, in their order; failed(k) ends each other one.
+template <class F>
+void Pool::Impl::drop_failed(F&& failed) {
   TaskRows& r = work.rows;
-  for (int32_t k = 0; k < r.count; ++k) work.before[k] = open_episode(work.env[k]);
-  call_rows([&] { task->reset_rows(r); });
-  // those that are well come first from here on; the others are settled
   int32_t good = 0;
   for (int32_t k = 0; k < r.count; ++k) {
-    const int32_t i = work.env[k];
     if (r.codes[k] != Code::kOk) {
-      work.result[i] = settle_episode(i, work.before[k], r.codes[k], false);
+      failed(k);
       continue;
     }
-    if (disturbance.any()) slots[i].disturbance.begin(disturbance, *task);
-    work.env[good] = i;
-    work.before[good] = work.before[k];
-    r.worlds[good] = r.worlds[k], r.states[good] = r.states[k], r.texts[good] = r.texts[k];
-    r.codes[good++] = Code::kOk;
+    if (good < k) {
+      work.env[good] = work.env[k];
+      work.before[good] = work.before[k];
+      r.worlds[good] = r.worlds[k], r.states[good] = r.states[k], r.texts[good] = r.texts[k];
+      r.verdicts[good] = r.verdicts[k];
+      r.codes[good] = Code::kOk;
+    }
+    ++good;
   }
   r.count = good;
+}
+
+// Episodes of the rows, which pick has named: rows that could not begin keep their codes.
+void Pool::Impl::begin_rows() {
+  const TaskRows& r = work.rows;
+  for (int32_t k = 0; k < r.count; ++k) work.before[k] = open_episode(work.env[k]);
+  call_rows([&] { task->reset_rows(r); });
+  drop_failed([&](int32_t k) {
+    const int32_t i = work.env[k];
+    work.result[i] = settle_episode(i, work.before[k], r.codes[k], false);
+  });
+  for (int32_t k = 0; disturbance.any() && k < r.count; ++k)
+    slots[work.env[k]].disturbance.begin(disturbance, *task);
   call_rows([&] { task->observe_rows(r); });
   for (int32_t k = 0; k < r.count; ++k) {
     const int32_t i = work.env[k];
@@ -189,30 +202,21 @@ void Pool::Impl::engine_rows() {
 }
 
 void Pool::Impl::finish_rows() {
-  TaskRows& r = work.rows;
+  const TaskRows& r = work.rows;
   pick([&](int32_t i) { return work.waits[i] && !engine_failed(i); });
   std::fill_n(r.verdicts, r.count, Verdict{});
   call_rows([&] { task->judge_rows(r); });
-  // those that are well come first from here on
-  int32_t good = 0;
-  for (int32_t k = 0; k < r.count; ++k) {
-    if (r.codes[k] != Code::kOk) {
-      lose_step(work.env[k], slots[work.env[k]].world->status() | kStatusTask);
-      continue;
-    }
-    work.env[good] = work.env[k];
-    r.worlds[good] = r.worlds[k], r.states[good] = r.states[k], r.texts[good] = r.texts[k];
-    r.verdicts[good] = r.verdicts[k];
-    r.codes[good++] = Code::kOk;
-  }
-  r.count = good;
+  const auto lose = [&](int32_t k) {
+    lose_step(work.env[k], slots[work.env[k]].world->status() | kStatusTask);
+  };
+  drop_failed(lose);
   call_rows([&] { task->observe_rows(r); });
   for (int32_t k = 0; k < r.count; ++k) {
-    const int32_t i = work.env[k];
     if (r.codes[k] != Code::kOk) {
-      lose_step(i, slots[i].world->status() | kStatusTask);
+      lose(k);
       continue;
     }
+    const int32_t i = work.env[k];
     std::copy_n(r.obs + k * static_cast<ptrdiff_t>(obs_dim), obs_dim, final_obs(i));
     judged(i, &r.verdicts[k], show(i, slots[i].episode.step + 1, final_obs(i)));
   }
