@@ -2,7 +2,6 @@
 under Gymnasium's own checker, wrappers and SyncVectorEnv where it is installed or REDMAN_PEERS has copies (peers.py)."""
 import copy
 import inspect
-import multiprocessing
 import pickle
 import re
 import subprocess

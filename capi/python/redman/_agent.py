@@ -11,16 +11,16 @@ import time
 import weakref
 from ctypes import byref, c_size_t
 from queue import SimpleQueue
-from typing import (TYPE_CHECKING, Any, Callable, Dict, Iterable, Iterator, Mapping, MutableMapping, Optional,
+from typing import (TYPE_CHECKING, Any, Callable, Dict, Iterable, Mapping, MutableMapping, Optional,
                     Sequence, Union)
 
 import numpy as np
 
 from . import _abi, _discovery
 from ._abi import ActMode
-from ._error import ArgumentError, Error, NotFoundError, StateError, UsageError, error_of
+from ._error import ArgumentError, Error, NotFoundError, StateError, UsageError
 from ._files import read_whole, write_whole
-from ._library import Handle, assign, bytes_of, check, encoded, failure, filled, lib, raise_kept, raised, sized, text
+from ._library import Handle, assign, bytes_of, check, encoded, failure, lib, raise_kept, raised, sized, text
 from ._limits import CostLimits, each_cost
 from ._names import Hinted, keywords, nearest
 from ._options import Given, Options, Value, kind_of, laid, option_array, read_settings, settings_of

@@ -3,9 +3,8 @@ from __future__ import annotations
 
 import ctypes
 import re
-import weakref
 from ctypes import byref, c_int32, c_void_p
-from typing import Any, Callable, ClassVar, Mapping, NamedTuple, Optional, Sequence, Union
+from typing import Any, Callable, ClassVar, Mapping, NamedTuple, Optional
 
 import numpy as np
 
@@ -14,14 +13,14 @@ from ._abi import OptionKind, ResultCode
 from ._error import ArgumentError, UsageError
 from ._library import check, encoded, lib, raised, sized
 from ._names import nearest
+from ._options import option_array
 from ._scene import SceneBuilder
 from ._worlds_rows import Worlds
 
-_VERDICT = np.dtype({"names": ["reward", "cost", "cost_raw", "terminated", "success"],
-                     "formats": ["f8", (f"f8", (_abi.RDM_MAX_COSTS,)), ("f8", (_abi.RDM_MAX_COSTS,)), "i4", "i4"],
-                     "offsets": [getattr(_abi.rdm_verdict, name).offset
-                                 for name in ("reward", "cost", "cost_raw", "terminated", "success")],
-                     "itemsize": ctypes.sizeof(_abi.rdm_verdict)})
+_MEMBERS = {"reward": "f8", "cost": ("f8", (_abi.RDM_MAX_COSTS,)), "cost_raw": ("f8", (_abi.RDM_MAX_COSTS,)),
+            "terminated": "i4", "success": "i4"}
+_VERDICT = np.dtype({"names": list(_MEMBERS), "formats": list(_MEMBERS.values()), "itemsize": ctypes.sizeof(_abi.rdm_verdict),
+                     "offsets": [getattr(_abi.rdm_verdict, name).offset for name in _MEMBERS]})
 
 
 # rdm_task_rows with plain addresses, which are read in every call.
@@ -84,7 +83,7 @@ class Task:
     action_dim: ClassVar[int] = 0  # entries of an action, each in [-1, 1]; required
     fields: ClassVar[Mapping[str, Any]] = {}  # of an observation: name -> count, or (count, unit), or (count, unit, low, high)
     costs: ClassVar[Any] = {}  # name -> limit on an episode's sum, None: no limit; or (limit, help). The first is the one learners limit
-    options: ClassVar[Mapping[str, Any]] = {}  # name -> default: a number, a bool, a text; or (low, high), drawn at each reset
+    options: ClassVar[Mapping[str, Any]] = {}  # name -> default: a number, a bool, a text; or (low, high), from which reset draws
     state: ClassVar[Mapping[str, int]] = {}  # name -> count of numbers that a world keeps over an episode: Worlds.state
     draws: ClassVar[bool] = False  # w.uniform and w.normal work in control and judge, too
     defaults: ClassVar[Mapping[str, Any]] = {}  # options of agents that learn it
@@ -117,15 +116,16 @@ class Task:
     @classmethod
     def register(cls) -> str:
         """Adds the task to the list of tasks, once; its name. What takes a task by name calls it."""
-        if cls._number is None or "_number" not in cls.__dict__:
+        if cls.__dict__.get("_number") is None:  # a subclass is a task of its own
             cls._number = _Description(cls).create()
         return cls.task_name()
 
     @classmethod
     def unregister(cls) -> None:
         """Takes it out of the list again, so that a changed class of that name can be registered; pools that have it keep it."""
-        if "_number" in cls.__dict__ and cls._number is not None:
-            check(lib.rdm_task_destroy(cls._number))
+        number = cls.__dict__.get("_number")
+        if number is not None:
+            check(lib.rdm_task_destroy(number))
             cls._number = None
 
     @classmethod
@@ -176,14 +176,6 @@ class RowTask(Task):
         return self.step(w, w.state["last_action"].astype(np.float32))
 
 
-_registered: dict[str, type[Task]] = {}
-
-
-def own_task(name: str) -> Optional[type[Task]]:
-    """The class of a task in Python by its name."""
-    return _registered.get(name)
-
-
 def _pair(value: Any) -> bool:
     return isinstance(value, (tuple, list)) and len(value) == 2 and all(isinstance(v, (int, float)) for v in value)
 
@@ -192,14 +184,17 @@ class _Description:
     """The rdm_task_def of a class, with all that it points at and the functions that the library calls."""
 
     def __init__(self, kind: type[Task]) -> None:
-        self.kind, self.kept, self.made = kind, list[Any](), dict[Any, Task]()
+        self.kind, self.kept = kind, list[Any]()
+        self.made, self.made_of = list[Task](), dict[Any, int]()  # a task for each choice of options, and its place there
         self.where = kind.__name__
         if not isinstance(kind.action_dim, int) or kind.action_dim < 1:
             raise UsageError(f"{self.where}.action_dim: how many entries an action has, not {kind.action_dim!r}")
         if not kind.fields:
             raise UsageError(f"{self.where}.fields: what an observation has, as {{\"position\": (3, \"m\")}}")
         self.fields = {name: self._field(name, row) for name, row in kind.fields.items()}
+        self.width = sum(count for count, *_ in self.fields.values())
         self.costs = self._costs()
+        self.columns = {name: k for k, name in enumerate(self.costs)}
         self.state, self.state_bytes = self._state()
         self.arrays: dict[tuple[int, Any], Any] = {}
 
@@ -248,9 +243,7 @@ class _Description:
         for option, (key, value) in zip(options, kind.options.items()):
             self._option(option, key, value)
         d.options, d.num_options = options, len(options)
-        defaults = (_abi.rdm_option * len(kind.defaults))()
-        for default, (key, value) in zip(defaults, kind.defaults.items()):
-            default.key, default.text = encoded(key), encoded(_word(value))
+        defaults = option_array(kind.defaults, {key: OptionKind.TEXT for key in kind.defaults})
         d.defaults, d.num_defaults = defaults, len(defaults)
         self.kept += [rows, costs, options, defaults]
         for member in ("hold", "mean"):
@@ -270,7 +263,6 @@ class _Description:
         out = c_int32()
         check(lib.rdm_task_create(byref(out), byref(d)))
         _descriptions[out.value] = self  # the library calls these functions as long as a pool has the task
-        _registered[kind.task_name()] = kind
         return out.value
 
     def _option(self, row: Any, key: str, value: Any) -> None:
@@ -310,11 +302,12 @@ class _Description:
             task.scene(s)
         finally:
             s._end()
-        # the same options make the same scene: one object for all pools of them
-        number = self.made.setdefault(tuple(options.values()), task)
-        if number is not task:
-            number.__dict__.update(task.__dict__)
-        c_void_p.from_address(instance).value = list(self.made).index(tuple(options.values())) + 1
+        # the same options make the same scene: one task for all pools of them
+        chosen = tuple(options.values())
+        if chosen not in self.made_of:
+            self.made_of[chosen] = len(self.made)
+            self.made.append(task)
+        c_void_p.from_address(instance).value = 1 + self.made_of[chosen]
 
     def _value(self, scene: Any, key: str, default: Any) -> Any:
         if isinstance(default, str):
@@ -329,8 +322,7 @@ class _Description:
         return type(default)(low.value)
 
     def _task(self, instance: int) -> Task:
-        at = c_void_p.from_address(instance).value or 0
-        return list(self.made.values())[at - 1]
+        return self.made[(c_void_p.from_address(instance).value or 0) - 1]
 
     def _rows(self, at: int) -> tuple[Worlds, Any]:
         rows = _Rows.from_address(at)
@@ -395,24 +387,22 @@ class _Description:
         return known
 
     def _column(self, name: str) -> int:
-        for k, known in enumerate(self.costs):
-            if known == name:
-                return k
-        raise ArgumentError(f"{self.where}.judge: {name!r} is no cost of it{nearest(name, self.costs)}")
+        if name not in self.columns:
+            raise ArgumentError(f"{self.where}.judge: {name!r} is no cost of it{nearest(name, self.columns)}")
+        return self.columns[name]
 
     def _observe_many(self, instance: int, at: int) -> None:
         w, rows = self._rows(at)
         given = self._task(instance).observe(w)
-        width = sum(field[0] for field in self.fields.values())
-        out = self._array(rows.obs, w.n, np.float32, width)
+        out = self._array(rows.obs, w.n, np.float32, self.width)
         if isinstance(given, Mapping):
             if given.keys() != self.fields.keys():
                 odd = sorted(set(given) ^ set(self.fields))
                 raise ArgumentError(f"{self.where}.observe: {', '.join(map(repr, odd))} should be both in fields and in what it returns")
             given = [given[name] for name in self.fields]
         if isinstance(given, np.ndarray):
-            if given.shape != (w.n, width):
-                raise ArgumentError(f"{self.where}.observe: shape {given.shape} is not ({w.n}, {width})")
+            if given.shape != (w.n, self.width):
+                raise ArgumentError(f"{self.where}.observe: shape {given.shape} is not ({w.n}, {self.width})")
             out[:] = given
             return
         if len(given) != len(self.fields):
@@ -428,10 +418,3 @@ class _Description:
 
 
 _descriptions: dict[int, _Description] = {}
-
-
-def _word(value: Any) -> str:
-    """A value of an option as a text."""
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    return ",".join(map(str, value)) if isinstance(value, (list, tuple)) else str(value)

@@ -5,7 +5,7 @@ import ctypes
 import math
 import operator
 import threading
-from ctypes import byref, c_int32, c_size_t, c_uint64
+from ctypes import byref, c_size_t, c_uint64
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Iterator, Mapping, Optional, Sequence, Union
 

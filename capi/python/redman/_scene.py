@@ -3,10 +3,10 @@ from __future__ import annotations
 
 import ctypes
 from ctypes import byref, c_double, c_int32, c_void_p
-from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence, Union
+from typing import TYPE_CHECKING, Any, Mapping, Optional, Sequence
 
 from . import _abi
-from ._abi import JointKind, ScenePart
+from ._abi import ScenePart
 from ._definition import fill, pose_of
 from ._error import ArgumentError
 from ._library import check, encoded, lib, sized, text

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import ctypes
 from ctypes import c_void_p
-from typing import Any, Callable, Optional, Sequence
+from typing import Any, Callable, Optional
 
 import numpy as np
 
@@ -23,14 +23,12 @@ _split.argtypes = [c_void_p, c_void_p]
 _uniform.argtypes, _uniform.restype = [c_void_p, ctypes.c_double, ctypes.c_double], ctypes.c_double
 _normal.argtypes, _normal.restype = [c_void_p], ctypes.c_double
 
-Q, QD, TARGET, TORQUE, LINK, BASE, BODY, SHAPE, SENSOR, TOUCH = range(10)
-_WIDTH = {LINK: 13, BASE: 13, BODY: 13, SHAPE: 7, SENSOR: 6, TOUCH: 2}
+_WIDTH: dict[int, int] = {Quantity.LINK: 13, Quantity.BASE: 13, Quantity.BODY: 13, Quantity.SHAPE: 7, Quantity.SENSOR: 6, Quantity.TOUCH: 2}
 _UNIT_Q = np.array([0.0, 0.0, 0.0, 1.0])
 
 
 class Worlds:
-    """n worlds within a call of a task's function; each array has a row for each of them and can be
-    kept.
+    """n worlds within a call of a task's function. Each array has a row for each of them; it cannot be written, but kept.
 
     Places are in m, quaternions (x, y, z, w), velocities in m/s and rad/s, forces in N. Parts are the numbers that SceneBuilder
     returned. In observe nothing can be set.
@@ -64,70 +62,70 @@ class Worlds:
     @property
     def q(self) -> Any:
         """[n][joints] coordinates of all joints of all robots, rad (m)."""
-        return self._joints(Q)
+        return self._joints(Quantity.Q)
 
     @property
     def qd(self) -> Any:
         """[n][joints] their velocities, rad/s (m/s)."""
-        return self._joints(QD)
+        return self._joints(Quantity.QD)
 
     @property
     def target(self) -> Any:
         """[n][joints] what their drives go for, rad (m)."""
-        return self._joints(TARGET)
+        return self._joints(Quantity.TARGET)
 
     @property
     def torque(self) -> Any:
         """[n][joints] of their drives, mean over the step, N m (N)."""
-        return self._joints(TORQUE)
+        return self._joints(Quantity.TORQUE)
 
     def joint(self, i: int) -> Any:
         """[n] the coordinate of one joint."""
-        return self._get(Q, i)[:, 0]
+        return self._get(Quantity.Q, i)[:, 0]
 
     def position(self, body: int) -> Any:
         """[n][3] where the centre of mass of a body is."""
-        return self._get(BODY, body)[:, 0:3]
+        return self._get(Quantity.BODY, body)[:, 0:3]
 
     def rotation(self, body: int) -> Any:
         """[n][4] the quaternion of a body."""
-        return self._get(BODY, body)[:, 3:7]
+        return self._get(Quantity.BODY, body)[:, 3:7]
 
     def velocity(self, body: int) -> Any:
         """[n][3] of a body's centre of mass."""
-        return self._get(BODY, body)[:, 7:10]
+        return self._get(Quantity.BODY, body)[:, 7:10]
 
     def spin(self, body: int) -> Any:
         """[n][3] angular velocity of a body, world axes."""
-        return self._get(BODY, body)[:, 10:13]
+        return self._get(Quantity.BODY, body)[:, 10:13]
 
     def body(self, body: int) -> Any:
         """[n][13] position, quaternion, velocity, angular velocity of a body."""
-        return self._get(BODY, body)
+        return self._get(Quantity.BODY, body)
 
     def link(self, link: int) -> Any:
         """[n][13] the same of a link, at the frame of its joint."""
-        return self._get(LINK, link)
+        return self._get(Quantity.LINK, link)
 
     def base(self, robot: int) -> Any:
         """[n][13] the same of a robot's base."""
-        return self._get(BASE, robot)
+        return self._get(Quantity.BASE, robot)
 
     def shape(self, shape: int) -> Any:
         """[n][7] position and quaternion of a shape."""
-        return self._get(SHAPE, shape)
+        return self._get(Quantity.SHAPE, shape)
 
     def sensor(self, sensor: int) -> Any:
         """[n][6] contact force and torque on a fingertip, mean over the step, in the link's frame."""
-        return self._get(SENSOR, sensor)
+        return self._get(Quantity.SENSOR, sensor)
 
     def touching(self, group: int) -> Any:
         """[n] whether anything of a group of SceneBuilder.touch touches; of the step just made, in judge and observe."""
-        return self._get(TOUCH, group)[:, 0] > 0
+        return self._get(Quantity.TOUCH, group)[:, 0] > 0
 
     def touch_force(self, group: int) -> Any:
         """[n] the sum of the contact forces of the group, N."""
-        return self._get(TOUCH, group)[:, 1]
+        return self._get(Quantity.TOUCH, group)[:, 1]
 
     def contacts(self, row: int) -> list[_abi.rdm_contact]:
         """The contacts of one row's world in the last substep: shape_a, shape_b, position, normal, force (N), depth (m)."""
