@@ -74,31 +74,8 @@ redman.ready = (async () => {
     task = name;
     finished.count = finished.success = 0;
     timed.ms = timed.steps = 0;
-    $('message').hidden = true;
-    if (view) view.end();
-    view = model = null;
-    const old = $('scene'), canvas = old.cloneNode();  // a context of its own
-    old.replaceWith(canvas);
-    if (!world.shapes.length) {
-      $('message').textContent = 'This task has nothing to look at: its world is numbers.';
-      $('message').hidden = false;
-    } else {
-      try {
-        model = modelOf(world.shapes, engine.poses(world.shapes.length));
-        view = openScene(canvas, model, contacts);
-        view.add(mouse.arrow);
-        view.setContacts($('contacts').checked);
-      } catch (e) {
-        $('message').textContent = 'This browser shows no WebGL here (' + e.message + '); the numbers work all the same.';
-        $('message').hidden = false;
-      }
-    }
-    $('cameras').replaceChildren(...world.cameras.filter(c => !c.name.startsWith('cloud')).map(c => {  // not what eyes look from
-      const b = document.createElement('button');
-      b.textContent = c.name;
-      b.onclick = () => look(c.name);
-      return b;
-    }));
+    ({ model, view } = showScene(view, world.shapes, () => modelOf(world.shapes, engine.poses(world.shapes.length)), contacts, mouse.arrow));
+    cameraButtons($('cameras'), world.cameras.map(c => c.name).filter(name => !name.startsWith('cloud')), look);  // not what eyes look from
     look(/^(hand_over|catch)/.test(task) ? 'close' : 'front');
     costRows($('costs'), world.costs);
     $('summary').textContent = `${world.summary}. ${world.obs} observations, ${world.actions} actions, ${Math.round(1 / world.dt)} steps in a second.`;

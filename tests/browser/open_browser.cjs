@@ -2,7 +2,7 @@
 // recorded ones, what the tool demonstrated is played again to the bit, buttons and the mouse do what they say, training learns.
 'use strict';
 const path = require('path');
-const { open } = require('../tool/browse.cjs');
+const { open, colours } = require('../tool/browse.cjs');
 const [file, pictures] = process.argv.slice(2);
 let passed = 0, failed = 0;
 function expect(good, text) {
@@ -13,20 +13,6 @@ function expect(good, text) {
 const wait = ms => new Promise(r => setTimeout(r, ms));
 const click = (page, selector) => page.ask(`document.querySelector('${selector}').click()`);
 const text = (page, id) => page.ask(`document.getElementById('${id}').textContent`);
-
-// How many colours the scene has, and a sum that changes with the picture.
-const colours = `(() => {
-  const copy = document.createElement('canvas');
-  copy.width = 160; copy.height = 100;
-  const g = copy.getContext('2d');
-  return new Promise(r => requestAnimationFrame(() => requestAnimationFrame(() => {
-    g.drawImage(document.getElementById('scene'), 0, 0, 160, 100);
-    const d = g.getImageData(0, 0, 160, 100).data, seen = new Set();
-    let sum = 0;
-    for (let i = 0; i < d.length; i += 4) { seen.add(d[i] << 16 | d[i + 1] << 8 | d[i + 2]); sum = (sum * 31 + d[i] + d[i + 1] + d[i + 2]) % 1000000007; }
-    r({ count: seen.size, sum });
-  })));
-})()`;
 
 async function whole() {
   const page = await open(file, { width: 1360, height: 860 });

@@ -74,4 +74,17 @@ async function open(file, { width = 1280, height = 800, dark = false } = {}) {
     },
   };
 }
-module.exports = { open };
+// For ask: how many colours the scene of a page has, and a sum that changes with the picture.
+const colours = `(() => {
+  const copy = document.createElement('canvas');
+  copy.width = 160; copy.height = 100;
+  const g = copy.getContext('2d');
+  return new Promise(r => requestAnimationFrame(() => requestAnimationFrame(() => {
+    g.drawImage(document.getElementById('scene'), 0, 0, 160, 100);
+    const d = g.getImageData(0, 0, 160, 100).data, seen = new Set();
+    let sum = 0;
+    for (let i = 0; i < d.length; i += 4) { seen.add(d[i] << 16 | d[i + 1] << 8 | d[i + 2]); sum = (sum * 31 + d[i] + d[i + 1] + d[i + 2]) % 1000000007; }
+    r({ count: seen.size, sum });
+  })));
+})()`;
+module.exports = { open, colours };

@@ -3,7 +3,7 @@
 'use strict';
 const { spawn } = require('child_process');
 const fs = require('fs'), http = require('http'), path = require('path');
-const { open } = require('./browse.cjs');
+const { open, colours } = require('./browse.cjs');
 const [tool, pictures] = process.argv.slice(2);
 const wait = ms => new Promise(r => setTimeout(r, ms));
 function expect(good, text) {
@@ -33,18 +33,6 @@ async function view(...words) {
     },
   };
 }
-const colours = `(() => {
-  const copy = document.createElement('canvas');
-  copy.width = 160; copy.height = 100;
-  const g = copy.getContext('2d');
-  return new Promise(r => requestAnimationFrame(() => requestAnimationFrame(() => {
-    g.drawImage(document.getElementById('scene'), 0, 0, 160, 100);
-    const d = g.getImageData(0, 0, 160, 100).data, seen = new Set();
-    let sum = 0;
-    for (let i = 0; i < d.length; i += 4) { seen.add(d[i] << 16 | d[i + 1] << 8 | d[i + 2]); sum = (sum * 31 + d[i] + d[i + 1] + d[i + 2]) % 1000000007; }
-    r({ count: seen.size, sum });
-  })));
-})()`;
 
 async function window_(address, { width = 900, height = 600 } = {}) {
   const page = await open(address, { width, height });

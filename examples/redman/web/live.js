@@ -26,6 +26,36 @@ function showCosts(box, costs, sum) {
   });
 }
 
+// A scene anew in the place of the canvas of id "scene"; before: the view that was there, or null. make(): its model (shapes.js). Gives
+// {model, view} with the mouse's arrow in it, nulls where there is nothing to see: the element of id "message" says why.
+function showScene(before, shapes, make, contacts, arrow) {
+  const $ = id => document.getElementById(id), shown = { model: null, view: null };
+  const say = text => { $('message').textContent = text; $('message').hidden = !text; };
+  if (before) before.end();
+  const old = $('scene'), canvas = old.cloneNode();  // a context of its own
+  old.replaceWith(canvas);
+  say(shapes.length ? '' : 'This task has nothing to look at: its world is numbers.');
+  if (!shapes.length) return shown;
+  try {
+    shown.model = make();
+    shown.view = openScene(canvas, shown.model, contacts);
+    shown.view.add(arrow);
+    shown.view.setContacts($('contacts').checked);
+  } catch (e) {
+    say('This browser shows no WebGL here (' + e.message + '); the numbers work all the same.');
+  }
+  return shown;
+}
+// A button for each camera by its name.
+function cameraButtons(box, names, look) {
+  box.replaceChildren(...names.map(name => {
+    const b = document.createElement('button');
+    b.textContent = name;
+    b.onclick = () => look(name);
+    return b;
+  }));
+}
+
 // ys against xs, which ascend, with the limit dashed (null: none) and, where `at` is one of xs, a cursor there.
 function plot(canvas, xs, ys, limit, title, color, at = null) {
   const ratio = window.devicePixelRatio || 1, w = canvas.clientWidth, h = canvas.clientHeight;

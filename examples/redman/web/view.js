@@ -71,36 +71,13 @@ const redman = window.redman = {};
     extent = sizeOf();
     frame = newest = null;
     Object.assign(curve, { at: [], ret: [], sums: [] });
-    $('message').hidden = true;
-    if (view) view.end();
-    view = model = null;
-    const old = $('scene'), canvas = old.cloneNode();  // a context of its own
-    old.replaceWith(canvas);
-    if (!world.shapes.length) {
-      $('message').textContent = 'This task has nothing to look at: its world is numbers.';
-      $('message').hidden = false;
-    } else {
-      try {
-        model = modelOf(world.shapes, world.poses, world.worlds, place);
-        view = openScene(canvas, model, contacts);
-        view.add(mouse.arrow);
-        view.setContacts($('contacts').checked);
-      } catch (e) {
-        $('message').textContent = 'This browser shows no WebGL here (' + e.message + '); the numbers work all the same.';
-        $('message').hidden = false;
-      }
-    }
+    ({ model, view } = showScene(view, world.shapes, () => modelOf(world.shapes, world.poses, world.worlds, place), contacts, mouse.arrow));
     $('task').textContent = words(world.task);
     $('summary').textContent = `${world.summary}. ${world.obs} observations, ${world.actions.length} actions, ${Math.round(1 / world.dt)} steps in a second.`;
     $('picture').replaceChildren(new Option('no picture', ''), ...world.cameras.map(c => new Option('seen by ' + words(c.name), c.name)));
     showPicture('');
     const stands = world.cameras.filter(c => !c.mounted && !c.name.startsWith('cloud'));
-    $('cameras').replaceChildren(...(world.worlds > 1 ? [{ name: 'all' }] : []).concat(stands).map(c => {
-      const b = document.createElement('button');
-      b.textContent = c.name;
-      b.onclick = () => look(c.name);
-      return b;
-    }));
+    cameraButtons($('cameras'), (world.worlds > 1 ? ['all'] : []).concat(stands.map(c => c.name)), look);
     $('actors').replaceChildren(...world.actors.map(who => {
       const b = document.createElement('button');
       b.textContent = who.split('/').pop();
