@@ -36,7 +36,7 @@ class Session {
   // All that stays the same, until scene_number() changes.
   Json scene() const;
   int64_t scene_number() const { return scene_number_; }
-  // The moment that is shown, as bytes: the length of a JSON text, the text, and its numbers (view/session.cpp). With rows of
+  // The moment that is shown, as bytes: the length of a JSON text, the text, and its numbers (view/messages.cpp). With rows of
   // the moments after `since`, which a window has already.
   std::string frame(int64_t since) const;
   int64_t at() const { return at_; }
