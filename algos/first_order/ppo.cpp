@@ -14,7 +14,8 @@ SampleLoss clipped_loss(float ratio, float gain, float linear, float clip) {
 }
 
 constinit const AlgoRow kPpo = make_algo_row<Ppo>(
-    "ppo", "Proximal policy optimisation, clipped (Schulman et al. 2017); costs are recorded only", kPpoRows,
-    Costs::kNone);
+    "ppo",
+    "Proximal policy optimisation with a clipped ratio (Schulman et al. 2017); costs are only recorded",
+    kPpoRows, Costs::kNone);
 
 }  // namespace rdm

@@ -27,8 +27,8 @@ class ClippedSurrogate final : public RatioLoss {
 struct ClipOptions {
   double clip;
 };
-inline constexpr auto kClipRows = option_rows<ClipOptions>(row<&ClipOptions::clip>(
-    basic(number_option("clip", 0.2, 1e-6, 10, "bound on the change of the probability ratio", true))));
+inline constexpr auto kClipRows = option_rows<ClipOptions>(row<&ClipOptions::clip>(basic(number_option(
+    "clip", 0.2, 1e-6, 10, "bound of the change of the probability ratio in an update", true))));
 // Of PPO, and what tables of algorithms on its step begin with.
 struct PpoOptions : SharedOptions, ClipOptions {};
 inline constexpr auto kPpoRows = option_rows<PpoOptions>(kSharedRows, kClipRows);

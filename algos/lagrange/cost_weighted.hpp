@@ -12,7 +12,7 @@ struct SplitOptions {
 inline constexpr auto kSplitRows =
     option_rows<SplitOptions>(row<&SplitOptions::split, false, true>(legacy(text_option(
         "cost_loss", "combined", "combined|split",
-        "combined: (A_r - l A_c)/(1 + l), clipped; split: cost part unclipped, as Ray et al. have it"))));
+        "combined: (A_r - l A_c)/(1 + l), clipped as one; split: cost part not clipped, as in Ray et al."))));
 
 // Base: an Agent. Rule: made from a ResolvedAgentConfig; step(costs, epoch) once per epoch
 // before the policy step, then weight(i) of limited cost i, mix(), split(), read_live(options), visit(io).

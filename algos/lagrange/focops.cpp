@@ -14,11 +14,13 @@ constexpr double kPaperBound = 2;  // on nu
 
 constexpr auto kOwnRows = option_rows<FocopsOwnOptions>(
     row<&FocopsOwnOptions::temperature>(
-        number_option("temperature", 1.5, 1e-6, 1e6, "lambda of the paper, fixed", true)),
-    row<&FocopsOwnOptions::eta>(basic(number_option(
-        "focops_eta", 0.02, 0, 1e6, "samples whose KL(new || old) is above this teach nothing", true))),
+        number_option("temperature", 1.5, 1e-6, 1e6, "fixed temperature, lambda in the paper", true)),
+    row<&FocopsOwnOptions::eta>(
+        basic(number_option("focops_eta", 0.02, 0, 1e6,
+                            "samples whose KL(new || old) exceeds this are left out of the gradient", true))),
     row<&FocopsOwnOptions::divide>(
-        legacy(flag_option("multiplier_divide", false, "advantage over (1 + nu), as a peer has it"))));
+        legacy(flag_option("multiplier_divide", false,
+                           "divide the combined advantage by 1 + nu, as other implementations do"))));
 
 }  // namespace
 

@@ -15,20 +15,22 @@ inline constexpr auto kLagrangeRows = option_rows<LagrangeOptions>(
     row<&MultiplierOptions::optimizer, MultiplierOptimizer::kSgd, MultiplierOptimizer::kAdam,
         MultiplierOptimizer::kSoftplus>(
         legacy(text_option("multiplier_optimizer", "adam", "sgd|adam|softplus",
-                           "of the multipliers; softplus: Adam on ln(e^l - 1)"))),
+                           "optimiser of the multipliers l; softplus: Adam on ln(e^l - 1)"))),
     row<&MultiplierOptions::init>(
-        basic(number_option("multiplier_init", 0.001, 0, 1e6, "initial multiplier"))),
-    row<&MultiplierOptions::rate>(
-        basic(number_option("multiplier_lr", 0.035, 0, 1e3, "rate of the multiplier per epoch", true))),
+        basic(number_option("multiplier_init", 0.001, 0, 1e6, "initial value of the multiplier"))),
+    row<&MultiplierOptions::rate>(basic(
+        number_option("multiplier_lr", 0.035, 0, 1e3, "learning rate of the multiplier, per epoch", true))),
     row<&MultiplierOptions::max>(
-        number_option("multiplier_max", 1e6, 0, kMaxMultiplier, "upper bound on the multiplier", true)),
+        number_option("multiplier_max", 1e6, 0, kMaxMultiplier, "upper bound of the multiplier", true)),
     row<&MultiplierOptions::gain>(number_option(
         "multiplier_gain", 0, 0, 1e6,
-        "added to the multiplier per violation: damps its swings (augmented Lagrangian)", true)),
-    row<&MultiplierOptions::normalized>(
-        legacy(flag_option("multiplier_normalized", false, "divide the violation by the limit; at most 3"))),
-    row<&LagrangeOptions::warmup>(integer_option(
-        "multiplier_warmup", 0, 0, 1 << 30, "epochs in which the multiplier's rate grows from 0", true)));
+        "amount added to the multiplier per unit of violation; damps oscillations (augmented Lagrangian)",
+        true)),
+    row<&MultiplierOptions::normalized>(legacy(flag_option(
+        "multiplier_normalized", false, "divide the violation by the limit; the quotient is bounded by 3"))),
+    row<&LagrangeOptions::warmup>(
+        integer_option("multiplier_warmup", 0, 0, 1 << 30,
+                       "number of first epochs in which the multiplier's learning rate rises from 0", true)));
 
 class Lagrange {
  public:

@@ -33,7 +33,7 @@ constexpr auto kTrpoLagRows = option_rows<TrpoLagOptions>(kTrpoRows, kLagRows);
 
 constinit const AlgoRow kPpoLag = make_algo_row<CostWeighted<Ppo, Lagrange>>(
     "ppo_lag",
-    "PPO on one clipped advantage, reward less costs by their Lagrange multipliers (Ray et al. 2019)",
+    "PPO on the reward's advantage minus each cost's times its Lagrange multiplier (Ray et al. 2019)",
     kPpoLagRows, Costs::kAny);
 constinit const AlgoRow kTrpoLag = make_algo_row<CostWeighted<Trpo, Lagrange>>(
     "trpo_lag", "TRPO with a Lagrange multiplier for each cost limit (Ray et al. 2019)", kTrpoLagRows,

@@ -10,11 +10,12 @@ namespace {
 constexpr auto kBarrierRows = option_rows<BarrierOptions>(
     row<&BarrierOptions::exact, false, true>(text_option(
         "barrier", "epoch", "epoch|exact",
-        "epoch: slope at J_c for an epoch, nearly a switch; exact: the paper's, at each minibatch's J_c")),
-    row<&BarrierOptions::kappa>(basic(
-        number_option("barrier_kappa", 0.01, 0, 1e6, "weight of ln(limit - J_c): 1 / m of the paper", true))),
+        "slope of the barrier: epoch: at J_c, fixed in an epoch; exact: at each minibatch's J_c (paper)")),
+    row<&BarrierOptions::kappa>(
+        basic(number_option("barrier_kappa", 0.01, 0, 1e6,
+                            "weight of the barrier's logarithm ln(limit - J_c), 1/t in the paper", true))),
     row<&BarrierOptions::max>(number_option(
-        "barrier_max", 1, 0, kHuge, "bound on the barrier's slope, and the slope beyond the limit", true)));
+        "barrier_max", 1, 0, kHuge, "largest slope of the barrier, and its slope beyond the limit", true)));
 
 }  // namespace
 
@@ -90,8 +91,7 @@ constexpr auto kIpoRows =
         .with<&ViolationOptions::scale>("raw");
 }  // namespace
 constinit const AlgoRow kIpo = make_algo_row<Ipo>(
-    "ipo",
-    "PPO with a cost weight that jumps to 1 at each limit; a barrier with barrier=exact (Liu et al. 2020)",
+    "ipo", "PPO with a log barrier at each limit; by default almost a switch at the limit (Liu et al. 2020)",
     kIpoRows, Costs::kAny);
 
 }  // namespace rdm

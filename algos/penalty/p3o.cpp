@@ -9,13 +9,15 @@ constexpr double kMaxPenalty = 1e9;
 
 constexpr auto kPenaltyRows = option_rows<PenaltyOptions>(
     row<&PenaltyOptions::init>(
-        basic(number_option("penalty", 20, 0, 1e6, "kappa, initial weight of the penalty"))),
-    row<&PenaltyOptions::growth>(
-        number_option("penalty_growth", 1, 1, 10,
-                      "factor on kappa per epoch; 1: fixed, where the paper has it grow", true)),
-    row<&PenaltyOptions::max>(number_option("penalty_max", 20, 0, kMaxPenalty, "largest kappa", true)),
+        basic(number_option("penalty", 20, 0, 1e6, "initial weight of the penalty, kappa in the paper"))),
+    row<&PenaltyOptions::growth>(number_option(
+        "penalty_growth", 1, 1, 10,
+        "factor on the penalty's weight after each epoch; 1: fixed (in the paper it grows)", true)),
+    row<&PenaltyOptions::max>(
+        number_option("penalty_max", 20, 0, kMaxPenalty, "largest weight of the penalty", true)),
     row<&PenaltyOptions::clip>(
-        flag_option("penalty_clip", true, "clip the cost's ratio too; the peers do not", true)));
+        flag_option("penalty_clip", true,
+                    "clip the probability ratio in the cost term too; other implementations do not", true)));
 
 }  // namespace
 
@@ -79,7 +81,7 @@ struct P3oOptions : PpoOptions, PenaltyOptions, ViolationOptions, WindowOptions 
 constexpr auto kP3oRows = option_rows<P3oOptions>(kPpoRows, kPenaltyRows, kViolationRows, kWindowRows);
 }  // namespace
 constinit const AlgoRow kP3o = make_algo_row<P3o>(
-    "p3o", "PPO with an exact penalty of fixed weight on each cost limit (Zhang et al. 2022)", kP3oRows,
-    Costs::kAny);
+    "p3o", "PPO with an exact penalty of fixed weight on violations of each limit (Zhang et al. 2022)",
+    kP3oRows, Costs::kAny);
 
 }  // namespace rdm

@@ -10,8 +10,9 @@ struct ProjectionOptions {
   bool kl;
 };
 constexpr auto kProjectionRows =
-    option_rows<ProjectionOptions>(row<&ProjectionOptions::kl, true, false>(basic(text_option(
-        "projection", "kl", "kl|l2", "metric in which the step is projected onto the cost limit"))));
+    option_rows<ProjectionOptions>(row<&ProjectionOptions::kl, true, false>(basic(
+        text_option("projection", "kl", "kl|l2",
+                    "metric in which the step is projected onto the cost limit: kl (Fisher matrix) or l2"))));
 
 class Pcpo final : public Cpo {
  public:

@@ -48,7 +48,7 @@ void Trpo::report(Learned& out) const {
 }
 
 constinit const AlgoRow kTrpo = make_algo_row<Trpo>(
-    "trpo", "Trust region policy optimisation (Schulman et al. 2015); costs are recorded only", kTrpoRows,
+    "trpo", "Trust region policy optimisation (Schulman et al. 2015); costs are only recorded", kTrpoRows,
     Costs::kNone);
 
 }  // namespace rdm

@@ -24,24 +24,27 @@ struct TrustOptions : CgOptions, FisherOptions {
   double line_search_decay;
 };
 inline constexpr auto kTrustRows = option_rows<TrustOptions>(
-    row<&TrustOptions::trust_kl>(
-        basic(number_option("trust_kl", 0.01, 1e-9, 1e3,
-                            "bound on the KL of an epoch's policy step; papers have 0.01 to 0.02", true))),
-    row<&CgOptions::iterations>(
-        integer_option("cg_iterations", 15, 1, 1000, "of conjugate gradients, at most", true)),
-    row<&CgOptions::tolerance>(number_option(
-        "cg_tolerance", 1e-6, 0, 1, "residual, relative to the right-hand side, that is enough", true)),
+    row<&TrustOptions::trust_kl>(basic(
+        number_option("trust_kl", 0.01, 1e-9, 1e3,
+                      "bound of the KL divergence of one policy step; 0.01 to 0.02 in the papers", true))),
+    row<&CgOptions::iterations>(integer_option("cg_iterations", 15, 1, 1000,
+                                               "largest number of conjugate-gradient iterations", true)),
+    row<&CgOptions::tolerance>(
+        number_option("cg_tolerance", 1e-6, 0, 1,
+                      "residual relative to the right-hand side at which conjugate gradients stop", true)),
     row<&FisherOptions::cg_damping>(
-        number_option("cg_damping", 0.1, 0, 1e6, "added to the diagonal of the Fisher matrix", true)),
-    row<&FisherOptions::fisher_stride>(legacy(
-        integer_option("fisher_stride", 1, 1, 1 << 20, "the Fisher matrix is of every n-th sample", true))),
-    row<&TrustOptions::line_search_steps>(
-        integer_option("line_search_steps", 15, 1, 1000, "lengths that are tried", true)),
+        number_option("cg_damping", 0.1, 0, 1e6, "amount added to the diagonal of the Fisher matrix", true)),
+    row<&FisherOptions::fisher_stride>(legacy(integer_option(
+        "fisher_stride", 1, 1, 1 << 20, "the Fisher matrix is computed from every n-th sample", true))),
+    row<&TrustOptions::line_search_steps>(integer_option(
+        "line_search_steps", 15, 1, 1000, "largest number of step lengths that the line search tries", true)),
     row<&TrustOptions::line_search_decay>(
-        number_option("line_search_decay", 0.8, 0.01, 0.99, "of one length to the next", true)),
-    row<&FisherOptions::kl_mean_over_dims>(legacy(flag_option(
-        "kl_mean_over_dims", false,
-        "KL and Fisher matrix averaged over action dimensions, as the peers have it; else summed"))));
+        number_option("line_search_decay", 0.8, 0.01, 0.99,
+                      "factor from one step length of the line search to the next", true)),
+    row<&FisherOptions::kl_mean_over_dims>(
+        legacy(flag_option("kl_mean_over_dims", false,
+                           "average KL and Fisher matrix over action dimensions, as other implementations "
+                           "do; false: sum them"))));
 
 // Vectors are laid out as the actor's block of parameters.
 class TrustRegion {
