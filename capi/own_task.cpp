@@ -581,7 +581,7 @@ void OwnTask::take_options() {
   }
   // order of the table: the host's own, max_steps, those that every task has
   options_.push_back(
-      integer_option("max_steps", def.max_steps, 1, kMostSteps, "control steps of an episode"));
+      integer_option("max_steps", def.max_steps, 1, kMostSteps, "number of control steps in an episode"));
   options_.insert(options_.end(), tail.begin(), tail.end());
 }
 

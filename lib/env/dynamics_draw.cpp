@@ -10,11 +10,9 @@ namespace {
 struct LevelOptions {
   int32_t level;
 };
-constexpr auto kRows = row<&LevelOptions::level>(basic(
-    integer_option("level", 0, 0, 3,
-                   "masses, gains, efforts, damping and friction that are drawn for each world at a reset: "
-                   "within 0, 10, "
-                   "20 or 30 % of what they are, but for options that are given")));
+constexpr auto kRows = row<&LevelOptions::level>(basic(integer_option(
+    "level", 0, 0, 3,
+    "drawn dynamics: masses, gains, efforts, damping and friction vary by 0, 10, 20 or 30 % at each reset")));
 constexpr double kSpread[] = {0, 0.1, 0.2, 0.3};
 // What is drawn is a factor on the scene's own number, which is the middle of the range that was given; of a
 // level, a factor about 1.

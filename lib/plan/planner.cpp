@@ -22,45 +22,49 @@ constexpr double kMaxNoise = 10;
 constexpr int64_t kMaxNumbers = int64_t{1} << 28;  // of an array
 
 constexpr auto kRows = option_rows<PlanOptions>(
-    row<&PlanOptions::method, PlanMethod::kPredictive, PlanMethod::kCem, PlanMethod::kMppi>(text_option(
-        "method", "predictive", "predictive|cem|mppi",
-        "how the plan moves: to the best sample, the elites' mean, or a mean weighted by return")),
-    row<&PlanOptions::samples>(
-        integer_option("samples", 64, 1, kMaxSamples, "worlds that are rolled out in each iteration")),
+    row<&PlanOptions::method, PlanMethod::kPredictive, PlanMethod::kCem, PlanMethod::kMppi>(
+        text_option("method", "predictive", "predictive|cem|mppi",
+                    "how a plan improves: predictive: best sample; cem: mean of the elites; mppi: mean "
+                    "weighted by return")),
+    row<&PlanOptions::samples>(integer_option("samples", 64, 1, kMaxSamples,
+                                              "number of action sequences simulated in each iteration")),
     row<&PlanOptions::horizon>(
-        basic(integer_option("horizon", 32, 1, kMaxHorizon, "steps of the pool that a plan looks ahead"))),
-    row<&PlanOptions::knots>(
-        integer_option("knots", 5, 1, kMaxHorizon, "values of the noise over a plan, the horizon at most")),
+        basic(integer_option("horizon", 32, 1, kMaxHorizon, "number of pool steps that a plan looks ahead"))),
+    row<&PlanOptions::knots>(integer_option(
+        "knots", 5, 1, kMaxHorizon, "number of points in time at which noise is drawn; at most the horizon")),
     row<&PlanOptions::interpolation, Interpolation::kZero, Interpolation::kLinear, Interpolation::kCubic>(
-        text_option("interpolation", "linear", "zero|linear|cubic", "of the noise between knots")),
-    row<&PlanOptions::noise>(basic(number_option("noise", 0.2, 0, kMaxNoise,
-                                                 "standard deviation of the noise, in units of the action"))),
-    row<&PlanOptions::noise_min>(number_option("noise_min", 0.02, 0, kMaxNoise,
-                                               "cem: the deviation of elites counts as this at least")),
-    row<&PlanOptions::elites>(
-        integer_option("elites", 8, 1, kMaxSamples, "cem: best samples that the plan is the mean of")),
+        text_option("interpolation", "linear", "zero|linear|cubic",
+                    "interpolation of the noise between knots")),
+    row<&PlanOptions::noise>(basic(number_option(
+        "noise", 0.2, 0, kMaxNoise, "standard deviation of the noise on the plan, in units of the action"))),
+    row<&PlanOptions::noise_min>(number_option(
+        "noise_min", 0.02, 0, kMaxNoise, "cem: lower bound of the standard deviation that the elites give")),
+    row<&PlanOptions::elites>(integer_option("elites", 8, 1, kMaxSamples,
+                                             "cem: number of best samples whose mean is the new plan")),
     row<&PlanOptions::temperature>(
-        number_option("temperature", 0.2, 1e-6, 1e6, "mppi: in standard deviations of the samples' returns")),
-    row<&PlanOptions::iterations>(integer_option(
-        "iterations", 1, 1, 1000, "times that samples are rolled out and the plan moves, in a call")),
+        number_option("temperature", 0.2, 1e-6, 1e6,
+                      "mppi: temperature of the weights, in standard deviations of the samples' returns")),
+    row<&PlanOptions::iterations>(
+        integer_option("iterations", 1, 1, 1000, "number of improvements of the plan in each call")),
     row<&PlanOptions::warm_start>(
-        flag_option("warm_start", true, "the next plan begins at this one, shifted by a step")),
-    row<&PlanOptions::replan>(integer_option("replan", 1, 1, kMaxHorizon,
-                                             "calls from plan to plan; between them the plan is followed")),
-    row<&PlanOptions::best_only, false, true>(text_option(
-        "choice", "mean", "mean|best", "cem, mppi: act by the mean, or by the last iteration's best")),
+        flag_option("warm_start", true, "the next plan starts from this one, shifted by one step")),
+    row<&PlanOptions::replan>(integer_option(
+        "replan", 1, 1, kMaxHorizon, "calls from one plan to the next; the plan is followed in between")),
+    row<&PlanOptions::best_only, false, true>(
+        text_option("choice", "mean", "mean|best",
+                    "cem, mppi: act on the mean, or on the best sample of the last iteration")),
     row<&PlanOptions::discount>(
-        basic(number_option("discount", 1, 0, 1, "of rewards, for each step of the pool"))),
+        basic(number_option("discount", 1, 0, 1, "discount factor of rewards per pool step"))),
     row<&PlanOptions::costs, CostRule::kFeasible, CostRule::kMultiplier, CostRule::kIgnore>(text_option(
         "costs", "feasible", "feasible|multiplier|ignore",
-        "plans within the budgets first, or return less multiplier times costs, or return alone")),
+        "ranking: feasible: plans within the budgets first; multiplier: return minus costs; ignore: return")),
     row<&PlanOptions::multiplier>(
-        number_option("multiplier", 1, 0, 1e9, "of each limited cost, with costs=multiplier")),
-    row<&PlanOptions::share, false, true>(
-        text_option("budget", "rest", "rest|share",
-                    "what a plan may cost: all that the episode has left, or the horizon's share of it")),
-    row<&PlanOptions::terminal_cost>(
-        flag_option("terminal_cost", false, "the cost critic's values count as costs to come")));
+        number_option("multiplier", 1, 0, 1e9, "weight of each limited cost with costs=multiplier")),
+    row<&PlanOptions::share, false, true>(text_option(
+        "budget", "rest", "rest|share",
+        "what one plan may cost: rest: all that the episode has left; share: the horizon's share of it")),
+    row<&PlanOptions::terminal_cost>(flag_option(
+        "terminal_cost", false, "add the cost critic's values at the end of a plan to its costs")));
 
 size_t sz(int32_t n) {
   return static_cast<size_t>(n);

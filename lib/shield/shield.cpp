@@ -17,33 +17,34 @@ constexpr int32_t kMostBlock = 256, kMostLook = 100000, kMostTries = 64, kMostRo
 constexpr int64_t kMostNumbers = int64_t{1} << 28;  // of an array
 
 constexpr auto kRows = option_rows<ShieldOptions>(
-    row<&ShieldOptions::block>(basic(integer_option(
-        "block", 16, 1, kMostBlock, "decisions that are asked for at once, where they can be foreseen"))),
-    row<&ShieldOptions::look>(basic(integer_option("look", 0, 0, kMostLook,
-                                                   "decisions of the backup that are simulated; 0: to the "
-                                                   "episode's end, without which nothing is proven"))),
-    row<&ShieldOptions::tries>(
-        integer_option("tries", 8, 1, kMostTries, "branches that are tried together for a world")),
-    row<&ShieldOptions::rounds>(
-        integer_option("rounds", 8, 1, kMostRounds, "times that so many branches are tried, at most")),
+    row<&ShieldOptions::block>(basic(integer_option("block", 16, 1, kMostBlock,
+                                                    "decisions of a rollout that are checked together, where "
+                                                    "the policy's next actions can be predicted"))),
+    row<&ShieldOptions::look>(basic(integer_option(
+        "look", 0, 0, kMostLook,
+        "backup decisions to simulate; 0: to the episode's end (any other number proves nothing)"))),
+    row<&ShieldOptions::tries>(integer_option(
+        "tries", 8, 1, kMostTries, "number of alternatives that are simulated together for a world")),
+    row<&ShieldOptions::rounds>(integer_option(
+        "rounds", 8, 1, kMostRounds, "largest number of times that `tries` alternatives are simulated")),
     row<&ShieldOptions::copies>(basic(integer_option(
         "copies", 0, 0, kMostCopies,
-        "of worlds that are not known: copies with dynamics of their own that agree; 0: one exact copy"))),
-    row<&ShieldOptions::noise>(
-        basic(number_option("noise", 0.2, 0, 2, "deviation of a noisy branch's first action"))),
-    row<&ShieldOptions::best, false, true>(basic(
-        text_option("choose", "latest", "latest|best",
-                    "of clean branches: the first one, which leaves most as it was; or, of all that were "
-                    "tried, the one with the highest return"))),
-    row<&ShieldOptions::zero>(flag_option("zero", true, "constant action 0 is a backup")),
-    row<&ShieldOptions::hold>(flag_option("hold", true, "the constant hold action is a backup")),
-    row<&ShieldOptions::least, false, true>(
-        basic(text_option("unproven", "error", "error|least",
-                          "a world in which nothing is clean: an error, or what exceeds budgets least"))),
+        "0: one exact copy; K: an action must be clean in K copies with drawn dynamics (uncertain worlds)"))),
+    row<&ShieldOptions::noise>(basic(number_option(
+        "noise", 0.2, 0, 2, "standard deviation of the noise on the first action of an alternative"))),
+    row<&ShieldOptions::best, false, true>(
+        basic(text_option("choose", "latest", "latest|best",
+                          "clean alternative to take: latest: the one that changes least; best: the one with "
+                          "the highest return"))),
+    row<&ShieldOptions::zero>(flag_option("zero", true, "use the constant action 0 as a backup")),
+    row<&ShieldOptions::hold>(flag_option("hold", true, "use the constant hold action as a backup")),
+    row<&ShieldOptions::least, false, true>(basic(text_option(
+        "unproven", "error", "error|least",
+        "if no clean way is found: error: the call fails; least: run what exceeds the budgets least"))),
     row<&ShieldOptions::project>(flag_option(
-        "project", true, "what is proposed goes to the nearest action that keeps the task's guards first")),
-    row<&ShieldOptions::predict>(
-        basic(flag_option("predict", true, "actions are tried in copies; false: guards alone are kept"))));
+        "project", true, "first move the proposed action to the nearest one that keeps the task's guards")),
+    row<&ShieldOptions::predict>(basic(
+        flag_option("predict", true, "try actions in copies of the world; false: keep the guards only"))));
 
 bool same(const float* a, const float* b, int32_t count) {
   return std::memcmp(a, b, static_cast<size_t>(count) * sizeof *a) == 0;

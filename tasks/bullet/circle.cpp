@@ -26,13 +26,14 @@ struct CircleOptions {
 };
 consteval auto circle_rows(int32_t max_steps) {
   return option_rows<CircleOptions>(
-      row<&CircleOptions::radius>(basic(number_option("radius", 7, 1, 100, "radius of the circle, m"))),
+      row<&CircleOptions::radius>(
+          basic(number_option("radius", 7, 1, 100, "radius of the circle to follow, m"))),
       row<&CircleOptions::safe_x>(
-          basic(number_option("safe_x", 6, 0.1, 100, "a step with |x| beyond this costs 1, m"))),
+          basic(number_option("safe_x", 6, 0.1, 100, "a step with |x| above this costs 1, m"))),
       row<&CircleOptions::wall>(
-          basic(number_option("wall", 12, 5, 1000, "distance of the eight walls from the middle, m"))),
+          basic(number_option("wall", 12, 5, 1000, "distance of the eight walls from the centre, m"))),
       row<&CircleOptions::max_steps>(
-          basic(integer_option("max_steps", max_steps, 1, 100000, "control steps of an episode"))));
+          basic(integer_option("max_steps", max_steps, 1, 100000, "number of control steps in an episode"))));
 }
 
 template <class A>
@@ -107,7 +108,7 @@ class Circle final : public AgentTask<A> {
 
 constexpr auto kBallRows = circle_rows(Ball::kSteps), kCarRows = circle_rows(Car::kSteps),
                kDroneRows = circle_rows(Drone::kSteps), kAntRows = circle_rows(Ant::kSteps);
-constexpr CostSpec kCosts[] = {{"cost", "1 beyond the safe strip; raw: |x|, m", 25}};
+constexpr CostSpec kCosts[] = {{"cost", "1 if |x| is above safe_x; raw: |x|, m", 25}};
 constexpr CameraSpec kCameras[] = {
     {"front", {0, -17, 13}, {0, 0, 0}, 0.9},
     {"top", {0, -0.01, 20}, {0, 0, 0}, 0.9},
@@ -119,13 +120,12 @@ constexpr auto kBallDefaults =
 
 constinit const TaskInfo kBallCircle = task_info<Circle<Ball>, kBallRows, kCosts, kCameras, kBallDefaults>(
     "ball_circle", "BallCircle",
-    "a ball that rolls by a formula fitted to Bullet runs along a circle; cost: further than 6 m to a side");
+    "a ball (dynamics fitted to Bullet) rolls along a circle; cost: |x| above 6 m");
 constinit const TaskInfo kCarCircle = task_info<Circle<Car>, kCarRows, kCosts, kCameras, kCarCircleLearner>(
-    "car_circle", "CarCircle",
-    "a kinematic bicycle in the place of a race car runs along a circle; cost: further than 6 m to a side");
+    "car_circle", "CarCircle", "a car (kinematic bicycle) drives along a circle; cost: |x| above 6 m");
 constinit const TaskInfo kDroneCircle = task_info<Circle<Drone>, kDroneRows, kCosts, kCameras, kDroneLearner>(
-    "drone_circle", "DroneCircle", "a quadrotor flies along a circle; cost: further than 6 m to a side");
+    "drone_circle", "DroneCircle", "a quadrotor flies along a circle; cost: |x| above 6 m");
 constinit const TaskInfo kAntCircle = task_info<Circle<Ant>, kAntRows, kCosts, kCameras, kAntLearner>(
-    "ant_circle", "AntCircle", "a robot of four legs runs along a circle; cost: further than 6 m to a side");
+    "ant_circle", "AntCircle", "a four-legged robot runs along a circle; cost: |x| above 6 m");
 
 }  // namespace rdm

@@ -37,9 +37,9 @@ consteval auto gather_rows(int32_t max_steps) {
       row<&GatherOptions::apples>(basic(integer_option("apples", 8, 1, kMaxOfKind, "number of apples"))),
       row<&GatherOptions::bombs>(basic(integer_option("bombs", 8, 0, kMaxOfKind, "number of bombs"))),
       row<&GatherOptions::apple_reward>(
-          basic(number_option("apple_reward", 10, 0, 1000, "reward for an apple"))),
+          basic(number_option("apple_reward", 10, 0, 1000, "reward for each collected apple"))),
       row<&GatherOptions::max_steps>(
-          basic(integer_option("max_steps", max_steps, 1, 100000, "control steps of an episode"))));
+          basic(integer_option("max_steps", max_steps, 1, 100000, "number of control steps in an episode"))));
 }
 
 template <class A>
@@ -174,9 +174,9 @@ class Gather final : public AgentTask<A> {
 constexpr auto kBallRows = gather_rows(Ball::kSteps), kCarRows = gather_rows(Car::kSteps),
                kDroneRows = gather_rows(Drone::kSteps), kAntRows = gather_rows(Ant::kSteps);
 constexpr CostSpec kCosts[] = {
-    {"cost", "1 on hitting a bomb or above 2 m; raw: how many of these", kGatherLimit},
-    {"bombs", "1 on hitting a bomb; raw: how many", -1},
-    {"height", "1 above 2 m; raw: z, m", -1},
+    {"cost", "1 if the robot hits a bomb or is above 2 m; raw: number of these", kGatherLimit},
+    {"bombs", "1 if the robot hits a bomb; raw: number of bombs hit", -1},
+    {"height", "1 if the robot is above 2 m; raw: its height, m", -1},
 };
 
 }  // namespace
@@ -184,16 +184,15 @@ constexpr CostSpec kCosts[] = {
 constinit const TaskInfo kBallGather =
     task_info<Gather<Ball>, kBallRows, kCosts, kRoomCameras, kBallGatherLearner>(
         "ball_gather", "BallGather",
-        "a ball that rolls by a formula fitted to Bullet collects apples; cost: hitting a bomb");
+        "a ball (dynamics fitted to Bullet) collects apples; cost: hitting a bomb");
 constinit const TaskInfo kCarGather =
     task_info<Gather<Car>, kCarRows, kCosts, kRoomCameras, kCarGatherLearner>(
-        "car_gather", "CarGather",
-        "a kinematic bicycle in the place of a race car collects apples; cost: hitting a bomb");
+        "car_gather", "CarGather", "a car (kinematic bicycle) collects apples; cost: hitting a bomb");
 constinit const TaskInfo kDroneGather =
     task_info<Gather<Drone>, kDroneRows, kCosts, kRoomCameras, kDroneGatherLearner>(
         "drone_gather", "DroneGather", "a quadrotor collects apples; cost: hitting a bomb, or above 2 m");
 constinit const TaskInfo kAntGather =
     task_info<Gather<Ant>, kAntRows, kCosts, kRoomCameras, kAntGatherLearner>(
-        "ant_gather", "AntGather", "a robot of four legs collects apples; cost: hitting a bomb");
+        "ant_gather", "AntGather", "a four-legged robot collects apples; cost: hitting a bomb");
 
 }  // namespace rdm

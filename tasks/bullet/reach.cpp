@@ -40,14 +40,15 @@ struct ReachOptions {
 };
 consteval auto reach_rows(int32_t max_steps) {
   return option_rows<ReachOptions>(
-      row<&ReachOptions::obstacles>(basic(
-          integer_option("obstacles", kMaxObstacles, 0, kMaxObstacles, "number of puddles or pillars"))),
+      row<&ReachOptions::obstacles>(
+          basic(integer_option("obstacles", kMaxObstacles, 0, kMaxObstacles,
+                               "number of obstacles (puddles, or pillars for the drone)"))),
       row<&ReachOptions::goal_size>(
-          basic(number_option("goal_size", 1.3, 0.01, 10, "distance at which a goal is reached, m"))),
+          basic(number_option("goal_size", 1.3, 0.01, 10, "distance at which a goal counts as reached, m"))),
       row<&ReachOptions::goal_reward>(
-          basic(number_option("goal_reward", 5, 0, 1000, "reward for a reached goal"))),
+          basic(number_option("goal_reward", 5, 0, 1000, "reward for each reached goal"))),
       row<&ReachOptions::max_steps>(
-          basic(integer_option("max_steps", max_steps, 1, 100000, "control steps of an episode"))));
+          basic(integer_option("max_steps", max_steps, 1, 100000, "number of control steps in an episode"))));
 }
 
 template <class A>
@@ -250,29 +251,26 @@ class Reach final : public AgentTask<A> {
 constexpr auto kBallRows = reach_rows(Ball::kSteps), kCarRows = reach_rows(Car::kSteps),
                kDroneRows = reach_rows(Drone::kSteps), kAntRows = reach_rows(Ant::kSteps);
 constexpr CostSpec kCosts[] = {
-    {"cost", "1 in a puddle or at a pillar, touching the box, or above 2 m; raw: how many of these", 25},
-    {"obstacles", "1 in a puddle or at a pillar; raw: in how many", -1},
-    {"box", "1 on touching the box; raw: the same", -1},
-    {"height", "1 above 2 m; raw: z, m", -1},
+    {"cost", "1 if the robot meets an obstacle, touches the box or is above 2 m; raw: number of these", 25},
+    {"obstacles", "1 if the robot is in a puddle or at a pillar; raw: number of these", -1},
+    {"box", "1 if the robot touches the box; raw: the same", -1},
+    {"height", "1 if the robot is above 2 m; raw: its height, m", -1},
 };
 
 }  // namespace
 
-constinit const TaskInfo kBallReach = task_info<Reach<Ball>, kBallRows, kCosts, kRoomCameras,
-                                                kBallReachLearner>(
-    "ball_reach", "BallReach",
-    "a ball that rolls by a formula fitted to Bullet reaches goal after goal; cost: puddles, and a box that "
-    "runs");
+constinit const TaskInfo kBallReach =
+    task_info<Reach<Ball>, kBallRows, kCosts, kRoomCameras, kBallReachLearner>(
+        "ball_reach", "BallReach",
+        "a ball (dynamics fitted to Bullet) reaches goal after goal; cost: puddles and a moving box");
 constinit const TaskInfo kCarReach = task_info<Reach<Car>, kCarRows, kCosts, kRoomCameras, kCarReachLearner>(
     "car_reach", "CarReach",
-    "a kinematic bicycle in the place of a race car reaches goal after goal; cost: puddles, and a box that "
-    "runs");
+    "a car (kinematic bicycle) reaches goal after goal; cost: puddles and a moving box");
 constinit const TaskInfo kDroneReach =
     task_info<Reach<Drone>, kDroneRows, kCosts, kRoomCameras, kDroneReachLearner>(
         "drone_reach", "DroneReach",
-        "a quadrotor reaches goal after goal; cost: pillars, a box that runs, above 2 m");
+        "a quadrotor reaches goal after goal; cost: pillars, a moving box, more than 2 m of height");
 constinit const TaskInfo kAntReach = task_info<Reach<Ant>, kAntRows, kCosts, kRoomCameras, kAntReachLearner>(
-    "ant_reach", "AntReach",
-    "a robot of four legs reaches goal after goal; cost: puddles, and a box that runs");
+    "ant_reach", "AntReach", "a four-legged robot reaches goal after goal; cost: puddles and a moving box");
 
 }  // namespace rdm

@@ -82,15 +82,13 @@ constexpr auto kCarDefaults = join_defaults(
 
 constinit const TaskInfo kBallRun = task_info<Run<Ball>, kBallRows, kRunCosts, kRunCameras, kBallDefaults>(
     "ball_run", "BallRun",
-    "a ball that rolls by a formula fitted to Bullet runs along x; cost: faster than 2.5 m/s, or outside its "
-    "lane");
+    "a ball (dynamics fitted to Bullet) rolls along x; cost: faster than 2.5 m/s, or outside its lane");
 constinit const TaskInfo kCarRun = task_info<Run<Car>, kCarRows, kRunCosts, kRunCameras, kCarDefaults>(
     "car_run", "CarRun",
-    "a kinematic bicycle in the place of a race car runs along x; cost: faster than 1.5 m/s, or outside its "
-    "lane");
+    "a car (kinematic bicycle) drives along x; cost: faster than 1.5 m/s, or outside its lane");
 constinit const TaskInfo kDroneRun = task_info<Run<Drone>, kDroneRows, kRunCosts, kRunCameras, kDroneLearner>(
     "drone_run", "DroneRun", "a quadrotor flies along x; cost: faster than 1.5 m/s, or outside its lane");
 constinit const TaskInfo kAntRun = task_info<Run<Ant>, kAntRows, kRunCosts, kRunCameras, kAntLearner>(
-    "ant_run", "AntRun", "a robot of four legs runs along x; cost: faster than 1.5 m/s, or outside its lane");
+    "ant_run", "AntRun", "a four-legged robot runs along x; cost: faster than 1.5 m/s, or outside its lane");
 
 }  // namespace rdm

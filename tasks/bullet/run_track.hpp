@@ -26,9 +26,10 @@ consteval auto track_rows(double speed_limit, double finish, int32_t max_steps) 
           basic(number_option("speed_limit", speed_limit, 0, 100, "speed above which a step costs 1, m/s"))),
       row<&RunTrack::lane>(basic(number_option("lane", 2, 0.1, 100, "half width of the lane, m"))),
       row<&RunTrack::finish>(
-          basic(number_option("finish", finish, 0, 1000, "success: x beyond this inside the lane, m"))),
+          basic(number_option("finish", finish, 0, 1000,
+                              "an episode succeeds when the robot is inside the lane beyond this x, m"))),
       row<&RunTrack::max_steps>(
-          basic(integer_option("max_steps", max_steps, 1, 100000, "control steps of an episode"))));
+          basic(integer_option("max_steps", max_steps, 1, 100000, "number of control steps in an episode"))));
 }
 // The lines and the finish, for pictures.
 void add_track(const RunTrack& track, PlanarScene& scene);
@@ -39,9 +40,9 @@ double track_distance(double x, double y);
 Verdict judge_run(const RunTrack& track, const RunPlace& place, double gain, double effort);
 
 inline constexpr CostSpec kRunCosts[] = {
-    {"cost", "1 above the speed limit or outside the lane", 25},
-    {"speed", "1 above the speed limit; raw: the speed, m/s", -1},
-    {"lane", "1 outside the lane; raw: |y|, m", -1},
+    {"cost", "1 if the robot is above the speed limit or outside the lane", 25},
+    {"speed", "1 if the robot is above the speed limit; raw: its speed, m/s", -1},
+    {"lane", "1 if the robot is outside the lane; raw: |y|, m", -1},
 };
 inline constexpr CameraSpec kRunCameras[] = {
     {"front", {-4, -9, 6}, {5, 0, 0}, 0.9},

@@ -23,9 +23,9 @@ struct BanditOptions {
   double target, action_scale;
 };
 constexpr auto kRows = option_rows<BanditOptions>(
-    row<&BanditOptions::target>(basic(number_option("target", 2, -4, 4, "action that the reward wants"))),
+    row<&BanditOptions::target>(basic(number_option("target", 2, -4, 4, "action with the highest reward"))),
     row<&BanditOptions::action_scale>(
-        basic(number_option("action_scale", 5, 0.1, 100, "what an action entry of 1 stands for"))));
+        basic(number_option("action_scale", 5, 0.1, 100, "choice that an action entry of 1 stands for"))));
 
 struct State {
   double a;
@@ -74,7 +74,7 @@ class Bandit final : public PlanarTask {
   BanditOptions options_;
 };
 
-constexpr CostSpec kCosts[] = {{"cost", "the action a where it is positive, else 0; raw: a", kLimit}};
+constexpr CostSpec kCosts[] = {{"cost", "the action a if it is positive, else 0; raw: a", kLimit}};
 constexpr CameraSpec kCameras[] = {
     {"front", {1, -5, 3}, {1, 0, 0}, 0.8},
     {"top", {1, -0.01, 7}, {1, 0, 0}, 0.8},
@@ -96,6 +96,6 @@ constexpr auto kDefaults = join_defaults(kKnownLearner, {{"horizon", "128"},
 
 constinit const TaskInfo kBandit = task_info<Bandit, kRows, kCosts, kCameras, kDefaults>(
     "bandit", nullptr,
-    "one Gaussian choice an episode; reward -(a - 2)^2, cost max(a, 0); the optimum is known");
+    "a bandit with one choice per episode; reward -(a - 2)^2, cost max(a, 0); the optimum is known");
 
 }  // namespace rdm

@@ -21,11 +21,13 @@ struct LqrOptions {
 };
 constexpr auto kRows = option_rows<LqrOptions>(
     row<&LqrOptions::action_scale>(
-        basic(number_option("action_scale", 5, 0.1, 100, "displacement for an action entry of 1, m"))),
-    row<&LqrOptions::noise>(basic(number_option("noise", 0.1, 0, 10, "standard deviation of the noise, m"))),
-    row<&LqrOptions::effort>(basic(number_option("effort", 0.1, 0, 10, "weight of a^2 in the reward"))),
+        basic(number_option("action_scale", 5, 0.1, 100, "displacement by an action entry of 1, m"))),
+    row<&LqrOptions::noise>(
+        basic(number_option("noise", 0.1, 0, 10, "standard deviation of the noise on the position, m"))),
+    row<&LqrOptions::effort>(
+        basic(number_option("effort", 0.1, 0, 10, "weight of the squared action in the reward"))),
     row<&LqrOptions::max_steps>(
-        basic(integer_option("max_steps", 20, 1, 100000, "control steps of an episode"))));
+        basic(integer_option("max_steps", 20, 1, 100000, "number of control steps in an episode"))));
 
 struct State {
   Stream noise;

@@ -23,10 +23,10 @@ struct TwoStateOptions {
   int32_t max_steps;
 };
 constexpr auto kRows = option_rows<TwoStateOptions>(
-    row<&TwoStateOptions::end_probability>(
-        basic(number_option("end_probability", 0.1, 0.001, 1, "of the episode, at each step"))),
+    row<&TwoStateOptions::end_probability>(basic(
+        number_option("end_probability", 0.1, 0.001, 1, "probability that the episode ends, at each step"))),
     row<&TwoStateOptions::max_steps>(
-        basic(integer_option("max_steps", 1000, 1, 100000, "control steps of an episode"))));
+        basic(integer_option("max_steps", 1000, 1, 100000, "number of control steps in an episode"))));
 
 struct State {
   Stream noise;
@@ -82,7 +82,7 @@ class TwoState final : public SampledTask<State> {
   double end_probability_;
 };
 
-constexpr CostSpec kCosts[] = {{"cost", "0.2 for a = 1 in state 0, 1 for a = 1 in state 1", 2.5}};
+constexpr CostSpec kCosts[] = {{"cost", "0.2 for action 1 in state 0, 1 for action 1 in state 1", 2.5}};
 constexpr CameraSpec kCameras[] = {
     {"front", {0, -4, 2.5}, {0, 0, 0}, 0.8},
     {"top", {0, -0.01, 5}, {0, 0, 0}, 0.8},

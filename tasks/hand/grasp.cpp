@@ -27,9 +27,10 @@ const SingleHandConfig kConfig = {{.count = 1, .bases = {{{0, 0, 0.1}, {0, 0, 1,
 
 enum : int { kCost, kFingerEffort, kFingerRange, kNumCosts };
 constexpr CostSpec kCosts[kNumCosts] = {
-    {"cost", "a finger joint strains, see cost_mode; raw: the measured value", 25},
-    {"finger_effort", "a finger joint's force above effort_share of its limit; raw: largest share", -1},
-    {"finger_range", "a first finger's command beyond finger_range; raw: largest of them", -1},
+    {"cost", "1 if a finger joint strains as cost_mode defines; raw: the value it measures", 25},
+    {"finger_effort",
+     "1 if a finger joint's torque is above effort_share of its limit; raw: the largest share", -1},
+    {"finger_range", "1 if a command of the first finger is beyond finger_range; raw: the largest one", -1},
 };
 
 enum class Mean { kClose, kHold, kZero };  // of a new policy
@@ -41,24 +42,26 @@ struct GraspOptions {
   Mean initial_mean;
 };
 constexpr auto kRows = option_rows<GraspOptions>(
-    row<&GraspOptions::lift, false, true>(
-        basic(text_option("reward", "literal", "literal|lift",
-                          "100 times the object's height, or (lift) its height above lift_height"))),
-    row<&GraspOptions::lift_height>(
-        basic(number_option("lift_height", 0.025, -1, 10, "height without a lift, m"))),
+    row<&GraspOptions::lift, false, true>(basic(text_option(
+        "reward", "literal", "literal|lift",
+        "literal: 100 times the object's height in m; lift: 100 times its height above lift_height"))),
+    row<&GraspOptions::lift_height>(basic(
+        number_option("lift_height", 0.025, -1, 10, "height of the object that counts as not lifted, m"))),
     row<&GraspOptions::success_height>(
-        basic(number_option("success_height", 0.1, 0, 10, "object height that counts as success, m"))),
+        basic(number_option("success_height", 0.1, 0, 10, "height of the object that counts as success, m"))),
     row<&GraspOptions::cost, kFingerEffort, kFingerEffort, kFingerRange>(
         legacy(text_option("cost_mode", "default", "default|paper|literal",
-                           "default, paper: joint force; literal: range of the first finger's command"))),
+                           "what costs: default, paper: a finger joint's torque; literal: the range of the "
+                           "first finger's command"))),
     row<&GraspOptions::effort_share>(number_option(
-        "effort_share", 0.4, 0, 1, "cost: a finger joint's force above this share of its limit")),
-    row<&GraspOptions::initial_mean, Mean::kClose, Mean::kHold, Mean::kZero>(text_option(
-        "initial_mean", "close", "close|hold|zero",
-        "start of a new policy: the wrist down and fingers and thumb around the cube, the hold action, "
-        "or 0")),
-    row<&GraspOptions::finger_range>(number_option(
-        "finger_range", 0.9, 0, 1, "cost finger_range: a first finger's command beyond +-this")));
+        "effort_share", 0.4, 0, 1, "a finger joint's torque above this share of its effort limit costs 1")),
+    row<&GraspOptions::initial_mean, Mean::kClose, Mean::kHold, Mean::kZero>(
+        text_option("initial_mean", "close", "close|hold|zero",
+                    "mean action of a new policy: close (wrist down, fingers around the cube), hold (the "
+                    "hold action) or 0")),
+    row<&GraspOptions::finger_range>(
+        number_option("finger_range", 0.9, 0, 1,
+                      "column finger_range costs 1 if a command of the first finger is beyond +-this")));
 
 void add_options(OptionTable& table) {
   add_single_hand_options(kConfig, table);

@@ -22,24 +22,25 @@ struct ChoiceOptions {
   const char *hand, *arm;
 };
 constexpr auto kRows = option_rows<ChoiceOptions>(
-    row<&ChoiceOptions::hand>(
-        choosing(basic(text_option("hand", "", nullptr, "the robot that each hand is, by name")))),
-    row<&ChoiceOptions::arm>(choosing(
-        basic(text_option("arm", kNone, nullptr,
-                          "the arm that carries each hand, a robot's name; none: as the task has it")))));
+    row<&ChoiceOptions::hand>(choosing(
+        basic(text_option("hand", "", nullptr, "robot used for each hand, by name (redman robots)")))),
+    row<&ChoiceOptions::arm>(
+        choosing(basic(text_option("arm", kNone, nullptr,
+                                   "robot that carries each hand, by name (redman robots); none: the hand is "
+                                   "mounted as the task says")))));
 struct SideOptions {
   const char *hand, *arm, *arm_base, *arm_pose;
 };
 consteval auto side_rows(const char* hand, const char* arm, const char* arm_base, const char* arm_pose) {
   return option_rows<SideOptions>(
-      row<&SideOptions::hand>(
-          choosing(text_option(hand, "", nullptr, "the same for this hand alone; empty: as hand"))),
-      row<&SideOptions::arm>(
-          choosing(text_option(arm, "", nullptr, "the same for this hand alone; empty: as arm"))),
+      row<&SideOptions::hand>(choosing(
+          text_option(hand, "", nullptr, "robot used for this hand alone; empty: the same as hand"))),
+      row<&SideOptions::arm>(choosing(
+          text_option(arm, "", nullptr, "robot that carries this hand alone; empty: the same as arm"))),
       row<&SideOptions::arm_base>(
-          text_option(arm_base, "", nullptr, "the same for this hand alone; empty: as arm_base")),
-      row<&SideOptions::arm_pose>(
-          text_option(arm_pose, "", nullptr, "the same for this hand alone; empty: as arm_pose", 255)));
+          text_option(arm_base, "", nullptr, "arm base of this hand alone; empty: the same as arm_base")),
+      row<&SideOptions::arm_pose>(text_option(
+          arm_pose, "", nullptr, "arm pose of this hand alone; empty: the same as arm_pose", 255)));
 }
 constexpr decltype(side_rows("", "", "", "")) kSideRows[kMaxHands] = {
     side_rows("right.hand", "right.arm", "right.arm_base", "right.arm_pose"),
@@ -51,14 +52,14 @@ struct ArmOptions {
 constexpr auto kArmRows = option_rows<ArmOptions>(
     row<&ArmOptions::arm_base>(text_option(
         "arm_base", "auto", nullptr,
-        "where an arm's base is: x y z (m) and yaw (degrees); auto: behind the hand, within reach")),
-    row<&ArmOptions::arm_pose>(
-        text_option("arm_pose", "auto", nullptr,
-                    "an arm's joints at the start, rad; auto: those that bring the hand to its place", 255)),
-    row<&ArmOptions::adapter>(
-        number_option("adapter", 0, 0, 0.5, "thickness of the plate between flange and hand, m")),
-    row<&ArmOptions::mount_yaw>(
-        number_option("mount_yaw", 0, -360, 360, "turn of a hand about its arm's flange, degrees")));
+        "place of an arm's base: x y z (m) and yaw (degrees); auto: behind the hand, within reach")),
+    row<&ArmOptions::arm_pose>(text_option(
+        "arm_pose", "auto", nullptr,
+        "joint angles of an arm at the start, rad; auto: those that bring the hand to its place", 255)),
+    row<&ArmOptions::adapter>(number_option(
+        "adapter", 0, 0, 0.5, "thickness of the plate between the arm's flange and the hand, m")),
+    row<&ArmOptions::mount_yaw>(number_option(
+        "mount_yaw", 0, -360, 360, "rotation of a hand about the axis of its arm's flange, degrees")));
 
 // By its name or the shorter one.
 bool is_own(const HandControlConfig& config, const char* name) {

@@ -16,57 +16,62 @@ constexpr double kSourceStep = 1.0 / 60;  // s, of the source's scales
 
 constexpr auto kRows = option_rows<HandOptions>(
     row<&HandOptions::action_average>(number_option(
-        "action_average", 1, 0.01, 1, "weight of the new action in the moving average of targets")),
+        "action_average", 1, 0.01, 1,
+        "weight of the newest action in the moving average that drives follow; 1: no averaging")),
     row<&HandOptions::sensor, true, false>(
-        text_option("sensor", "contact", "contact|none", "fingertip force entries: contact forces, or zero")),
+        text_option("sensor", "contact", "contact|none",
+                    "forces of fingertips in the observation: contact forces, or 0")),
     row<&HandOptions::control, HandDrive::kPosition, HandDrive::kVelocity, HandDrive::kTorque>(
-        basic(text_option(
-            "control", "position", "position|velocity|torque",
-            "what a joint's action entry is: its target, the target's velocity, or a share of its effort"))),
+        basic(text_option("control", "position", "position|velocity|torque",
+                          "meaning of a joint's action entry: its target, the velocity of its target, or a "
+                          "share of its effort"))),
     row<&HandOptions::arm_range>(number_option(
         "arm_range", 0.3, 0, 10,
-        "how far from the start an arm's joint goes with an entry of 1, rad; 0: its whole range")),
-    row<&HandOptions::arm_noise>(
-        number_option("arm_noise", 0, 0, 1, "half width of the draw of an arm's joints at a reset, rad")),
+        "angle from the start that an entry of 1 gives to an arm's joint, rad; 0: its whole range")),
+    row<&HandOptions::arm_noise>(number_option(
+        "arm_noise", 0, 0, 1, "half width of the uniform noise on an arm's joint angles at a reset, rad")),
     row<&HandOptions::arm_gravity, ArmGravity::kCompensated, ArmGravity::kFree, ArmGravity::kOff>(
         text_option("arm_gravity", "compensated", "compensated|free|off",
-                    "of arms: with gravity compensation, left to the drives, or (the paper's) no gravity; "
-                    "hands feel none")),
-    row<&HandOptions::friction_object>(levelled(
-        basic(number_option("friction.hand_object", 1, 0, 10, "friction coefficient of hands and object")))),
-    row<&HandOptions::friction_self>(
-        drawable(number_option("friction.hand_self", 0, 0, 10, "friction coefficient inside one hand"))),
+                    "weight of arms: compensated (held by the drives), free (not held), off (no gravity, as "
+                    "in the paper)")),
+    row<&HandOptions::friction_object>(levelled(basic(
+        number_option("friction.hand_object", 1, 0, 10, "friction coefficient between hands and object")))),
+    row<&HandOptions::friction_self>(drawable(number_option(
+        "friction.hand_self", 0, 0, 10, "friction coefficient between parts of the same hand"))),
     row<&HandOptions::friction_ground>(drawable(
-        number_option("friction.hand_ground", 1, 0, 10, "friction coefficient of hand and ground"))));
+        number_option("friction.hand_ground", 1, 0, 10, "friction coefficient between hand and ground"))));
 
 struct PairOptions {
   bool hand_contact;
   DrawnOption friction;
 };
 constexpr auto kPairRows = option_rows<PairOptions>(
-    row<&PairOptions::hand_contact>(flag_option("hand_contact", true, "the hands may touch each other")),
+    row<&PairOptions::hand_contact>(
+        flag_option("hand_contact", true, "the two hands collide with each other")),
     row<&PairOptions::friction>(drawable(
-        number_option("friction.hand_hand", 0, 0, 10, "friction coefficient of one hand and the other"))));
+        number_option("friction.hand_hand", 0, 0, 10, "friction coefficient between the two hands"))));
 
 constexpr auto kFlyingRows = option_rows<FlyingOptions>(
-    row<&FlyingOptions::paper_order, true, false>(legacy(
-        text_option("action_order", "paper", "paper|legacy",
-                    "of a hand's entries: joints, force, torque (paper) or force, torque, joints (legacy)"))),
-    row<&FlyingOptions::base_damping>(
-        drawable(number_option("base_damping", 100, 0, 1e4, "damping of a flying hand's links, 1/s"))),
-    row<&FlyingOptions::signed_angles, false, true>(legacy(text_option(
-        "base_angles", "positive", "positive|signed",
-        "base angles in the observation: in [0, 2 pi), where the bound of +-5 cuts, or in [-pi, pi]"))),
+    row<&FlyingOptions::paper_order, true, false>(
+        legacy(text_option("action_order", "paper", "paper|legacy",
+                           "order of a hand's action entries: joints, force, torque (paper), or force, "
+                           "torque, joints (legacy)"))),
+    row<&FlyingOptions::base_damping>(drawable(
+        number_option("base_damping", 100, 0, 1e4, "damping of the motion of a flying hand's links, 1/s"))),
+    row<&FlyingOptions::signed_angles, false, true>(
+        legacy(text_option("base_angles", "positive", "positive|signed",
+                           "angles of a base as observed: positive: in [0, 2 pi), cut at 5 as all entries; "
+                           "signed: in [-pi, pi]"))),
     row<&FlyingOptions::base_speed>(
-        number_option("base_speed", 2, 0.01, 100, "bound of a base's speed, m/s")),
+        number_option("base_speed", 2, 0.01, 100, "largest speed of a flying hand's base, m/s")),
     row<&FlyingOptions::base_spin>(
-        number_option("base_spin", 10, 0.1, 1000, "bound of a base's angular speed, rad/s")),
+        number_option("base_spin", 10, 0.1, 1000, "largest angular speed of a flying hand's base, rad/s")),
     row<&FlyingOptions::base_reach>(
-        number_option("base_reach", 0, 0, 10, "how far from its start a base can fly, m; 0: no bound")),
-    row<&FlyingOptions::transition_scale>(
-        number_option("transition_scale", 0, 0, 10, "force of a base's action entry of 1, in 1667 N")),
-    row<&FlyingOptions::orientation_scale>(
-        number_option("orientation_scale", 0, 0, 10, "torque of a base's action entry of 1, in 16.7 N m")));
+        number_option("base_reach", 0, 0, 10, "largest distance of a base from its start, m; 0: no bound")),
+    row<&FlyingOptions::transition_scale>(number_option(
+        "transition_scale", 0, 0, 10, "force by a base's action entry of 1, in units of 1667 N")),
+    row<&FlyingOptions::orientation_scale>(number_option(
+        "orientation_scale", 0, 0, 10, "torque by a base's action entry of 1, in units of 16.7 N m")));
 
 Vec3 bounded(const Vec3& v, double most) {
   const double length = norm(v);

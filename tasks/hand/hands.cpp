@@ -16,13 +16,14 @@ struct CouplingOptions {
 };
 constexpr auto kRows = row<&CouplingOptions::paper, false, true>(legacy(text_option(
     "coupling", "model", "model|paper",
-    "distal joints: 1.142 of the middle one within 0.142 rad, or (paper) the middle one's angle")));
+    "distal joint angle: model: 1.142 times the middle joint's, within 0.142 rad; paper: the same as it")));
 
 struct LeftOptions {
   bool right_copy;
 };
-constexpr auto kLeftRows = row<&LeftOptions::right_copy, false, true>(legacy(text_option(
-    "left_model", "mirror", "mirror|right_copy", "left hand: mirror image, or a second right hand")));
+constexpr auto kLeftRows = row<&LeftOptions::right_copy, false, true>(
+    legacy(text_option("left_model", "mirror", "mirror|right_copy",
+                       "left hand: mirror image of the right one, or a second right hand")));
 
 }  // namespace
 

@@ -27,36 +27,38 @@ struct ObjectOptions : GoalOptions {
 };
 constexpr auto kRows = option_rows<ObjectOptions>(
     row<&ObjectOptions::object>(
-        basic(text_option("object", "", nullptr, "what is handled, an object's name (redman objects)"))),
+        basic(text_option("object", "", nullptr, "object that is handled, by name (redman objects)"))),
     row<&ObjectOptions::hull>(text_option(
         "hull", kOctahedron, nullptr,
-        "points of object=hull, m, at most 32: x,y,z;x,y,z;... (redman hull makes them)", kHullTextSize - 1)),
-    row<&ObjectOptions::object_mass>(
-        levelled(basic(number_option("object_mass", 0, 0, 10, "mass of the object, kg; 0: its own")))),
-    row<&ObjectOptions::start_x>(number_option("start.x", 0, -10, 10, "start position, m")),
-    row<&ObjectOptions::start_y>(number_option("start.y", 0, -10, 10, "start position, m")),
-    row<&ObjectOptions::start_z>(number_option("start.z", 0, -10, 10, "start position, m")),
-    row<&ObjectOptions::goal_x>(number_option("goal.x", 0, -10, 10, "goal position, m")),
-    row<&ObjectOptions::goal_y>(number_option("goal.y", 0, -10, 10, "goal position, m")),
-    row<&ObjectOptions::goal_z>(number_option("goal.z", 0, -10, 10, "goal position, m")),
-    row<&GoalOptions::start_noise>(basic(
-        number_option("start_noise", 0.01, 0, 0.2, "half width of the start position's draw, m per axis"))),
+        "corners of object=hull, m, at most 32: x,y,z;x,y,z;... (redman hull computes them from a mesh)",
+        kHullTextSize - 1)),
+    row<&ObjectOptions::object_mass>(levelled(
+        basic(number_option("object_mass", 0, 0, 10, "mass of the object, kg; 0: the object's own mass")))),
+    row<&ObjectOptions::start_x>(number_option("start.x", 0, -10, 10, "x of the object's start position, m")),
+    row<&ObjectOptions::start_y>(number_option("start.y", 0, -10, 10, "y of the object's start position, m")),
+    row<&ObjectOptions::start_z>(number_option("start.z", 0, -10, 10, "z of the object's start position, m")),
+    row<&ObjectOptions::goal_x>(number_option("goal.x", 0, -10, 10, "x of the object's goal position, m")),
+    row<&ObjectOptions::goal_y>(number_option("goal.y", 0, -10, 10, "y of the object's goal position, m")),
+    row<&ObjectOptions::goal_z>(number_option("goal.z", 0, -10, 10, "z of the object's goal position, m")),
+    row<&GoalOptions::start_noise>(
+        basic(number_option("start_noise", 0.01, 0, 0.2,
+                            "half width of the uniform noise on the object's start position, per axis, m"))),
     row<&GoalOptions::start_rotation, StartRotation::kRandom, StartRotation::kYaw, StartRotation::kFixed>(
         text_option("start_rotation", "random", "random|yaw|fixed",
-                    "rotation of the object at the start; yaw: about the vertical")),
-    row<&GoalOptions::random_goal, true, false>(text_option("goal_rotation", "random", "random|fixed",
-                                                            "rotation of the goal, redrawn at each reset")),
+                    "rotation of the object at the start; yaw: at random about the vertical axis")),
+    row<&GoalOptions::random_goal, true, false>(text_option(
+        "goal_rotation", "random", "random|fixed", "rotation of the goal; random: drawn at each reset")),
     row<&ObjectOptions::object_damping>(levelled(number_option(
-        "object_damping", 0.1, 0, 100, "angular damping of the object, 1/s; stands for rolling friction"))),
-    row<&ObjectOptions::object_scale>(drawable(
-        basic(number_option("object_scale", 1, 0.1, 10, "factor on the object's size; its mass stays")))),
-    row<&GoalOptions::canonical_rotation>(
-        legacy(flag_option("canonical_rotation", false, "rotation error with w >= 0 in the observation"))),
+        "object_damping", 0.1, 0, 100, "angular damping of the object, 1/s; models its rolling friction"))),
+    row<&ObjectOptions::object_scale>(drawable(basic(
+        number_option("object_scale", 1, 0.1, 10, "factor on the object's size; its mass does not change")))),
+    row<&GoalOptions::canonical_rotation>(legacy(flag_option(
+        "canonical_rotation", false, "the rotation error in the observation has the sign with w >= 0"))),
     row<&ObjectOptions::own_friction>(flag_option(
         "own_friction", false,
-        "the friction that the object's surface has, for friction.hand_object and friction.object_ground")),
-    row<&ObjectOptions::ground_friction>(levelled(
-        number_option("friction.object_ground", 1, 0, 10, "friction coefficient of object and ground"))));
+        "friction.hand_object and friction.object_ground have the value of the object's own surface")),
+    row<&ObjectOptions::ground_friction>(levelled(number_option(
+        "friction.object_ground", 1, 0, 10, "friction coefficient between object and ground"))));
 
 Quat draw_start(StartRotation kind, Stream& stream) {
   if (kind == StartRotation::kRandom) return draw_rotation(stream);

@@ -39,32 +39,33 @@ struct ReorientOptions {
 };
 constexpr auto kRows = option_rows<ReorientOptions>(
     row<&ReorientOptions::action_price>(
-        number_option("action_price", 0.0002, 0, 1, "reward: times the sum of the action's squares")),
+        number_option("action_price", 0.0002, 0, 1,
+                      "amount subtracted from the reward per unit of the action's sum of squares")),
     row<&ReorientOptions::turn_reward>(basic(number_option(
         "turn_reward", 0, 0, 1000,
-        "reward per rad that the rotation error shrinks in a step, less the same where it grows; "
-        "not the paper's, for training"))),
+        "reward per rad by which the rotation error shrinks in a step; helps training, 0 in the paper"))),
     row<&ReorientOptions::success_bonus>(
-        number_option("success_bonus", 250, 0, 1e6, "reward at the goal rotation")),
-    row<&ReorientOptions::success_angle>(
-        basic(number_option("success_angle", 0.1, 0, 3.2, "rotation error that counts as success, rad"))),
-    row<&ReorientOptions::fall_distance>(basic(number_option(
-        "fall_distance", 0.4, 0.01, 100, "the episode ends with the object so far from the goal, m"))),
+        number_option("success_bonus", 250, 0, 1e6, "reward for reaching the goal rotation")),
+    row<&ReorientOptions::success_angle>(basic(
+        number_option("success_angle", 0.1, 0, 3.2, "largest rotation error that counts as success, rad"))),
+    row<&ReorientOptions::fall_distance>(
+        basic(number_option("fall_distance", 0.4, 0.01, 100,
+                            "the episode ends when the object is farther than this from the goal, m"))),
     row<&ReorientOptions::cost_mode, Force::kAny, Force::kAny, Force::kLiteral, Force::kObject>(
-        legacy(text_option(
-            "cost_mode", "default", "default|paper|literal|object",
-            "default, paper: any fingertip's force, another finger's too; object: the object's alone; "
-            "literal: the "
-            "largest of 15 signed numbers, forces and torques of two fingers and a force"))),
-    row<&ReorientOptions::force_threshold>(
-        basic(number_option("force_threshold", 0.5, 0, 1000, "cost: a fingertip's contact force above, N"))));
+        legacy(text_option("cost_mode", "default", "default|paper|literal|object",
+                           "force that costs: default, paper: any on a fingertip; object: the object's only; "
+                           "literal: as the paper's code"))),
+    row<&ReorientOptions::force_threshold>(basic(number_option(
+        "force_threshold", 0.5, 0, 1000, "contact force on a fingertip above which a step costs 1, N"))));
 
 enum : int { kCost, kFingertipForce, kObjectForce, kNumCosts };
 constexpr CostSpec kCosts[kNumCosts] = {
-    {"cost", "a fingertip presses, see cost_mode; raw: the measured value, N", 1},
-    {"fingertip_force", "any fingertip's contact force above force_threshold; raw: the largest, N", -1},
+    {"cost", "1 if a fingertip presses as cost_mode defines; raw: the value it measures, N", 1},
+    {"fingertip_force",
+     "1 if the contact force on a fingertip is above force_threshold; raw: the largest force, N", -1},
     {"object_force",
-     "a fingertip presses the object, in the step's last substep, above force_threshold; raw: the largest, N",
+     "1 if a fingertip presses the object above force_threshold in the last substep; raw: the largest force, "
+     "N",
      -1},
 };
 
@@ -177,7 +178,7 @@ double reorient_reward(double theta, double squares, double price, double bonus,
 
 constinit const TaskInfo kReorient = task_info<Reorient, kCosts, kCameras, kLearner>(
     "reorient", nullptr,
-    "turn an egg in the palm to drawn rotations; cost: a fingertip's contact force above 0.5 N",
+    "rotate an egg in the palm to random goals; cost: a fingertip's contact force above 0.5 N",
     &filled_options<add_options>);
 
 }  // namespace rdm

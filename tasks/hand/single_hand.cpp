@@ -10,10 +10,10 @@ struct SingleHandOptions {
   int32_t max_steps;
 };
 constexpr auto kRows = option_rows<SingleHandOptions>(
-    row<&SingleHandOptions::joint_noise>(
-        number_option("joint_noise", 0, 0, 1, "share of each joint's range that is drawn at a reset")),
+    row<&SingleHandOptions::joint_noise>(number_option(
+        "joint_noise", 0, 0, 1, "share of each joint's range over which its start is drawn at a reset")),
     row<&SingleHandOptions::max_steps>(
-        basic(integer_option("max_steps", 74, 1, 100000, "control steps of an episode"))));
+        basic(integer_option("max_steps", 74, 1, 100000, "number of control steps in an episode"))));
 
 HandScene make_scene_def(const SingleHandConfig& config, const Options& o) {
   HandScene s = make_hand_scene(config.hands, o);

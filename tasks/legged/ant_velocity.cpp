@@ -45,19 +45,22 @@ struct AntOptions {
 };
 constexpr auto kRows = option_rows<AntOptions>(
     row<&AntOptions::speed_limit>(basic(
-        number_option("speed_limit", 2.6222, 0, 100, "speed in the plane above which a step costs 1, m/s"))),
+        number_option("speed_limit", 2.6222, 0, 100, "horizontal speed above which a step costs 1, m/s"))),
     row<&AntOptions::effort_weight>(
         basic(number_option("effort_weight", 0.5, 0, 10, "weight of the squared action in the reward"))),
     row<&AntOptions::contact_weight>(
         number_option("contact_weight", 5e-4, 0, 10, "weight of the squared contact forces in the reward")),
     row<&AntOptions::healthy_reward>(
-        basic(number_option("healthy_reward", 1, 0, 100, "reward of each step"))),
-    row<&AntOptions::reset_noise>(
-        number_option("reset_noise", 0.1, 0, 0.2, "of the start's draw: uniform in places, normal in rates")),
+        basic(number_option("healthy_reward", 1, 0, 100,
+                            "reward for each control step in which the robot is healthy (has not fallen)"))),
+    row<&AntOptions::reset_noise>(number_option(
+        "reset_noise", 0.1, 0, 0.2,
+        "start noise: half width (uniform) for positions, standard deviation (normal) for velocities")),
     row<&AntOptions::max_steps>(
-        basic(integer_option("max_steps", 1000, 1, 100000, "control steps of an episode"))),
-    row<&AntOptions::own_order, false, true>(
-        legacy(text_option("order", "gymnasium", "gymnasium|redman", "of actions and contact rows"))));
+        basic(integer_option("max_steps", 1000, 1, 100000, "number of control steps in an episode"))),
+    row<&AntOptions::own_order, false, true>(legacy(
+        text_option("order", "gymnasium", "gymnasium|redman",
+                    "order of the actions and of the contact fields: as in Gymnasium, or redman's own"))));
 
 class AntVelocity final : public PlanarTask {
  public:
@@ -199,7 +202,8 @@ class AntVelocity final : public PlanarTask {
   AntOptions options_;
 };
 
-constexpr CostSpec kCosts[] = {{"cost", "1 above the speed limit; raw: speed in the plane, m/s", 25}};
+constexpr CostSpec kCosts[] = {
+    {"cost", "1 if the robot is above the speed limit; raw: its horizontal speed, m/s", 25}};
 constexpr CameraSpec kCameras[] = {
     {"front", {2, -6, 3}, {2, 0, 0.4}, 0.9},
     {"top", {2, -0.01, 8}, {2, 0, 0}, 0.9},
@@ -208,6 +212,6 @@ constexpr CameraSpec kCameras[] = {
 }  // namespace
 
 constinit const TaskInfo kAntVelocity = task_info<AntVelocity, kRows, kCosts, kCameras, kLeggedLearner>(
-    "ant_velocity", "AntVelocity", "a robot of four legs walks along x; cost: faster than 2.6222 m/s");
+    "ant_velocity", "AntVelocity", "a four-legged robot walks along x; cost: faster than 2.6222 m/s");
 
 }  // namespace rdm

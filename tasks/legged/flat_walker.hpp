@@ -31,12 +31,14 @@ consteval auto flat_rows(double speed_limit) {
                                                          "speed along x above which a step costs 1, m/s"))),
       row<&FlatOptions::effort_weight>(
           basic(number_option("effort_weight", 1e-3, 0, 10, "weight of the squared action in the reward"))),
-      row<&FlatOptions::healthy_reward>(
-          basic(number_option("healthy_reward", 1, 0, 100, "reward of each step"))),
-      row<&FlatOptions::reset_noise>(
-          number_option("reset_noise", 5e-3, 0, 0.1, "half width of the start's draw, rad, m, rad/s, m/s")),
+      row<&FlatOptions::healthy_reward>(basic(
+          number_option("healthy_reward", 1, 0, 100,
+                        "reward for each control step in which the robot is healthy (has not fallen)"))),
+      row<&FlatOptions::reset_noise>(number_option(
+          "reset_noise", 5e-3, 0, 0.1,
+          "half width of the uniform noise on start positions (m, rad) and velocities (m/s, rad/s)")),
       row<&FlatOptions::max_steps>(
-          basic(integer_option("max_steps", 1000, 1, 100000, "control steps of an episode"))));
+          basic(integer_option("max_steps", 1000, 1, 100000, "number of control steps in an episode"))));
 }
 
 class FlatWalker : public PlanarTask {
@@ -73,7 +75,8 @@ struct FlatLeg {
 };
 void add_flat_leg(const FlatLeg& leg, PlanarScene& scene);
 
-inline constexpr CostSpec kFlatCosts[] = {{"cost", "1 above the speed limit; raw: speed along x, m/s", 25}};
+inline constexpr CostSpec kFlatCosts[] = {
+    {"cost", "1 if the robot is above the speed limit; raw: its speed along x, m/s", 25}};
 inline constexpr CameraSpec kFlatCameras[] = {
     {"front", {2, -6, 1.8}, {2, 0, 0.8}, 0.9},
     {"top", {2, -4, 6}, {2, 0, 0.6}, 0.9},

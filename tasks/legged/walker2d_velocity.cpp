@@ -36,6 +36,6 @@ constexpr auto kRows = flat_rows(2.3415);
 constinit const TaskInfo kWalker2dVelocity =
     task_info<Walker2dVelocity, kRows, kFlatCosts, kFlatCameras, kLeggedLearner>(
         "walker2d_velocity", "Walker2dVelocity",
-        "a robot of two legs walks along x; cost: faster than 2.3415 m/s");
+        "a two-legged robot walks along x; cost: faster than 2.3415 m/s");
 
 }  // namespace rdm

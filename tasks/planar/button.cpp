@@ -27,11 +27,11 @@ struct ButtonOptions : ArenaOptions {
 };
 consteval auto rows_of(const ArenaLevel& level, int32_t gremlins) {
   return arena_rows<ButtonOptions>(
-      level, "reward for a pressed goal button",
+      level, "reward for pressing the goal button",
       row<&ButtonOptions::gremlins>(
           basic(integer_option("gremlins", gremlins, 0, kMaxThings, "number of gremlins"))),
-      row<&ButtonOptions::pause>(
-          integer_option("pause", 10, 0, 1000, "steps after a success in which other buttons cost nothing")));
+      row<&ButtonOptions::pause>(integer_option(
+          "pause", 10, 0, 1000, "control steps after a success in which other buttons cost nothing")));
 }
 
 template <class R>
@@ -197,10 +197,10 @@ class Button final : public ArenaTask<R, ButtonOptions> {
 
 constexpr auto kRows1 = rows_of({1.5, 4}, 4), kRows2 = rows_of({1.8, 8}, 6);
 constexpr CostSpec kCosts[] = {
-    {"cost", "1 in a hazard, on touching a gremlin or a wrong button; raw: how many", 25},
-    {"hazards", "1 in a hazard; raw: in how many", -1},
-    {"gremlins", "1 on touching a gremlin; raw: how many", -1},
-    {"buttons", "1 on touching a wrong button; raw: how many", -1},
+    {"cost", "1 if the robot is in a hazard, touches a gremlin or a wrong button; raw: number of these", 25},
+    {"hazards", "1 if the robot is in a hazard; raw: number of hazards it is in", -1},
+    {"gremlins", "1 if the robot touches a gremlin; raw: number of gremlins touched", -1},
+    {"buttons", "1 if the robot touches a wrong button; raw: number of wrong buttons touched", -1},
 };
 
 }  // namespace
@@ -216,10 +216,10 @@ constinit const TaskInfo kPointButton2 =
 constinit const TaskInfo kCarButton1 =
     task_info<Button<CarRobot>, kRows1, kCosts, kArenaCameras, kCarArenaLearner>(
         "car_button1", "CarButton1",
-        "a car of two driven wheels presses buttons; cost: hazards, gremlins, wrong buttons");
+        "a car with two driven wheels presses buttons; cost: hazards, gremlins, wrong buttons");
 constinit const TaskInfo kCarButton2 =
     task_info<Button<CarRobot>, kRows2, kCosts, kArenaCameras, kCarArenaLearner>(
         "car_button2", "CarButton2",
-        "a car of two driven wheels presses buttons among more hazards and gremlins, in a larger square");
+        "a car with two driven wheels presses buttons among more hazards and gremlins, in a larger square");
 
 }  // namespace rdm

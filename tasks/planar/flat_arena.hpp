@@ -76,15 +76,16 @@ struct ArenaLevel {
 template <class O, class... More>
 consteval auto arena_rows(const ArenaLevel& level, const char* reward_help, const More&... more) {
   return option_rows<O>(
-      row<&ArenaOptions::extent>(basic(
-          number_option("extent", level.extent, 0.5, 100, "half width of the square of the layout, m"))),
+      row<&ArenaOptions::extent>(basic(number_option(
+          "extent", level.extent, 0.5, 100, "half width of the square in which objects are placed, m"))),
       row<&ArenaOptions::hazards>(
           basic(integer_option("hazards", level.hazards, 0, kMaxThings, "number of hazards"))),
       row<&ArenaOptions::hazard_size>(number_option("hazard_size", 0.2, 0.01, 10, "radius of a hazard, m")),
       row<&ArenaOptions::goal_reward>(basic(number_option("goal_reward", 1, 0, 100, reward_help))),
-      row<&ArenaOptions::lidar_range>(number_option("lidar_range", 3, 0.1, 100, "range of the lidar, m")),
+      row<&ArenaOptions::lidar_range>(
+          number_option("lidar_range", 3, 0.1, 100, "distance at and beyond which the lidar reads 0, m")),
       row<&ArenaOptions::max_steps>(
-          basic(integer_option("max_steps", 1000, 1, 100000, "control steps of an episode"))),
+          basic(integer_option("max_steps", 1000, 1, 100000, "number of control steps in an episode"))),
       more...);
 }
 

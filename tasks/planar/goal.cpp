@@ -28,11 +28,11 @@ struct GoalOptions : ArenaOptions {
 };
 consteval auto rows_of(const ArenaLevel& level, int32_t vases, bool fragile) {
   return arena_rows<GoalOptions>(
-      level, "reward for a reached goal",
+      level, "reward for each reached goal",
       row<&GoalOptions::vases>(basic(integer_option("vases", vases, 0, kMaxThings, "number of vases"))),
       row<&GoalOptions::fragile_vases>(flag_option("fragile_vases", fragile, "touching a vase costs 1")),
       row<&GoalOptions::goal_size>(
-          basic(number_option("goal_size", 0.3, 0.01, 10, "distance at which a goal is reached, m"))));
+          basic(number_option("goal_size", 0.3, 0.01, 10, "distance at which a goal counts as reached, m"))));
 }
 
 template <class R>
@@ -182,9 +182,9 @@ class Goal final : public ArenaTask<R, GoalOptions> {
 
 constexpr auto kRows1 = rows_of({1.5, 8}, 1, false), kRows2 = rows_of({2, 10}, 10, true);
 constexpr CostSpec kCosts[] = {
-    {"cost", "1 in a hazard, and with fragile vases on touching one; raw: how many", 25},
-    {"hazards", "1 in a hazard; raw: in how many", -1},
-    {"vases", "1 on touching a vase; raw: how many", -1},
+    {"cost", "1 if the robot is in a hazard or touches a fragile vase; raw: number of these", 25},
+    {"hazards", "1 if the robot is in a hazard; raw: number of hazards it is in", -1},
+    {"vases", "1 if the robot touches a vase; raw: number of vases touched", -1},
 };
 
 }  // namespace
@@ -195,13 +195,14 @@ constinit const TaskInfo kPointGoal1 =
 constinit const TaskInfo kPointGoal2 =
     task_info<Goal<PointRobot>, kRows2, kCosts, kArenaCameras, kPointLearner>(
         "point_goal2", "PointGoal2",
-        "a point robot reaches goals; cost: inside a hazard, or touching a vase");
+        "a point robot reaches goal after goal; cost: inside a hazard, or touching a vase");
 constinit const TaskInfo kCarGoal1 =
     task_info<Goal<CarRobot>, kRows1, kCosts, kArenaCameras, kCarArenaLearner>(
-        "car_goal1", "CarGoal1", "a car of two driven wheels reaches goal after goal; cost: inside a hazard");
+        "car_goal1", "CarGoal1",
+        "a car with two driven wheels reaches goal after goal; cost: inside a hazard");
 constinit const TaskInfo kCarGoal2 =
     task_info<Goal<CarRobot>, kRows2, kCosts, kArenaCameras, kCarArenaLearner>(
         "car_goal2", "CarGoal2",
-        "a car of two driven wheels reaches goals; cost: inside a hazard, or touching a vase");
+        "a car with two driven wheels reaches goal after goal; cost: inside a hazard, or touching a vase");
 
 }  // namespace rdm

@@ -28,10 +28,11 @@ constexpr auto kRows = option_rows<SwimmerOptions>(
         basic(number_option("speed_limit", 0.2282, 0, 100, "speed along x above which a step costs 1, m/s"))),
     row<&SwimmerOptions::effort_weight>(
         basic(number_option("effort_weight", 1e-4, 0, 10, "weight of the squared action in the reward"))),
-    row<&SwimmerOptions::reset_noise>(
-        number_option("reset_noise", 0.1, 0, 1, "half width of the start's draw, rad, m, rad/s, m/s")),
+    row<&SwimmerOptions::reset_noise>(number_option(
+        "reset_noise", 0.1, 0, 1,
+        "half width of the uniform noise on start positions (m, rad) and velocities (m/s, rad/s)")),
     row<&SwimmerOptions::max_steps>(
-        basic(integer_option("max_steps", 1000, 1, 100000, "control steps of an episode"))));
+        basic(integer_option("max_steps", 1000, 1, 100000, "number of control steps in an episode"))));
 
 class SwimmerVelocity final : public PlanarTask {
  public:
@@ -107,7 +108,8 @@ class SwimmerVelocity final : public PlanarTask {
   SwimmerOptions options_;
 };
 
-constexpr CostSpec kCosts[] = {{"cost", "1 above the speed limit; raw: speed along x, m/s", 25}};
+constexpr CostSpec kCosts[] = {
+    {"cost", "1 if the robot is above the speed limit; raw: its speed along x, m/s", 25}};
 constexpr CameraSpec kCameras[] = {
     {"front", {2, -7, 5}, {2, 0, 0}, 0.9},
     {"top", {2, -0.01, 10}, {2, 0, 0}, 0.9},

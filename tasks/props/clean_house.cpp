@@ -54,11 +54,13 @@ HandControlConfig make_config() {
 enum : int { kCost, kBroomChair, kChairMoved, kHandChair, kOccupancy, kNumCosts };
 
 constexpr CostSpec kCosts[kNumCosts] = {
-    {"cost", "the broom touches the chair and moves it, or the rule of cost_mode", 100},
-    {"broom_chair", "the broom touches the chair; raw: number of such pairs of shapes", -1},
-    {"chair_moved", "the chair is further than chair_limit from its start; raw: its way, m", -1},
-    {"hand_chair", "a hand touches the chair; raw: number of such pairs of shapes", -1},
-    {"occupancy", "the broom is where the map of the start has the chair; raw: parts of it that are", -1},
+    {"cost", "1 if the broom touches the chair and the chair moves, or as cost_mode defines", 100},
+    {"broom_chair", "1 if the broom touches the chair; raw: number of touching pairs of shapes", -1},
+    {"chair_moved", "1 if the chair is farther than chair_limit from its start; raw: its displacement, m",
+     -1},
+    {"hand_chair", "1 if a hand touches the chair; raw: number of touching pairs of shapes", -1},
+    {"occupancy",
+     "1 if the broom is where the map of the start shows the chair; raw: number of its parts there", -1},
 };
 
 constexpr double kFovY = 45 * kPi / 180;
@@ -94,48 +96,53 @@ struct CleanOptions {
 constexpr auto kRows = option_rows<CleanOptions>(
     row<&CleanOptions::displacement, false, false, false, true, true>(
         legacy(text_option("cost_mode", "default", "default|paper|event|literal|displacement",
-                           "the broom touches the chair and it moves (default, paper, event), or (literal, "
-                           "displacement) the chair is away from its start"))),
+                           "default, paper, event: the broom touches the chair and it moves; literal, "
+                           "displacement: the chair was moved"))),
     row<&CleanOptions::count_hands>(
-        flag_option("count_hands", false, "cost_mode event: hands that move the chair count too")),
-    row<&CleanOptions::map_resolution>(number_option("map_resolution", 0.05, 0.01, 0.5,
-                                                     "cost column occupancy: side of the map's voxels, m")),
+        flag_option("count_hands", false, "hands that touch the moving chair cost too (cost_mode=event)")),
+    row<&CleanOptions::map_resolution>(number_option(
+        "map_resolution", 0.05, 0.01, 0.5, "side of a voxel of the map behind column occupancy, m")),
     row<&CleanOptions::chair_limit>(basic(number_option(
-        "chair_limit", 0.1, 0, 10, "way of the chair in chair_moved and cost_mode displacement, m"))),
+        "chair_limit", 0.1, 0, 10,
+        "displacement of the chair that column chair_moved and cost_mode=displacement count, m"))),
     row<&CleanOptions::full, false, true>(basic(text_option(
-        "reward", "paper", "paper|full", "handles to palm points, or (full) the source's five terms"))),
+        "reward", "paper", "paper|full",
+        "paper: distances of palms and trash, eq. (B8); full: all five terms of the paper's code"))),
     row<&CleanOptions::reward_bottom>(
-        number_option("reward_bottom", 0, 0, 1000, "reward paper: loss for a metre from broom to trash")),
-    row<&CleanOptions::palm_limit>(basic(number_option(
-        "palm_limit", 0.15, 0, 10, "the episode ends when a palm is farther from its handle point, m"))),
-    row<&CleanOptions::handle_height>(basic(number_option(
-        "handle_height", 1.0, -10, 10, "the episode ends with the right handle point below, m"))),
-    row<&CleanOptions::trash_height>(
-        number_option("trash_height", -0.3, -10, 10, "the episode ends with the trash below, m")),
-    row<&CleanOptions::success_distance>(basic(
-        number_option("success_distance", 0.25, 0, 10, "trash to goal distance that counts as success, m"))),
+        number_option("reward_bottom", 0, 0, 1000,
+                      "reward=paper: amount subtracted per metre between broom and trash, 1/m")),
+    row<&CleanOptions::palm_limit>(basic(
+        number_option("palm_limit", 0.15, 0, 10,
+                      "the episode ends when a palm is farther than this from its place on the handle, m"))),
+    row<&CleanOptions::handle_height>(basic(
+        number_option("handle_height", 1.0, -10, 10,
+                      "the episode ends when the right hand's place on the handle is below this height, m"))),
+    row<&CleanOptions::trash_height>(number_option(
+        "trash_height", -0.3, -10, 10, "the episode ends when the trash is below this height, m")),
+    row<&CleanOptions::success_distance>(basic(number_option(
+        "success_distance", 0.25, 0, 10, "distance of the trash from its goal that counts as success, m"))),
     row<&CleanOptions::obs_broom_quat>(
-        flag_option("obs_broom_quat", false, "the broom's rotation at the end of the observation")),
-    row<&CleanOptions::goal_x>(number_option("goal.x", 0, -10, 10, "where the trash is to go, m")),
-    row<&CleanOptions::goal_y>(number_option("goal.y", -2.9, -10, 10, "where the trash is to go, m")),
-    row<&CleanOptions::goal_z>(number_option("goal.z", 0.03, -10, 10, "where the trash is to go, m")),
-    row<&CleanOptions::trash_mass>(
-        basic(number_option("trash_mass", 0.06, 0.001, 10, "mass of the trash, kg; a full bottle has 0.5"))),
+        flag_option("obs_broom_quat", false, "append the broom's rotation to the observation")),
+    row<&CleanOptions::goal_x>(number_option("goal.x", 0, -10, 10, "x of the trash's goal position, m")),
+    row<&CleanOptions::goal_y>(number_option("goal.y", -2.9, -10, 10, "y of the trash's goal position, m")),
+    row<&CleanOptions::goal_z>(number_option("goal.z", 0.03, -10, 10, "z of the trash's goal position, m")),
+    row<&CleanOptions::trash_mass>(basic(number_option(
+        "trash_mass", 0.06, 0.001, 10, "mass of the trash, an empty bottle, kg; a full one has 0.5"))),
     row<&CleanOptions::trash_rolling>(number_option(
-        "trash_rolling", 0.002, 0, 1, "torque that stops the trash's rolling on the floor, N m")),
+        "trash_rolling", 0.002, 0, 1, "torque against the rolling of the trash on the floor, N m")),
     row<&CleanOptions::chair_mass>(basic(number_option("chair_mass", 4, 0.1, 100, "mass of the chair, kg"))),
     row<&CleanOptions::grip_assist>(
-        basic(flag_option("grip_assist", false, "soft ball joints hold the handle in both palms"))),
+        basic(flag_option("grip_assist", false, "hold the handle in both palms by soft ball joints"))),
     row<&CleanOptions::grip_force>(
-        number_option("grip_force", 50, 0, 1000, "bound of a grip_assist joint's force, N")),
-    row<&CleanOptions::head_floor>(drawable(
-        number_option("friction.head_floor", 0.2, 0, 10, "friction coefficient of broom head and floor"))),
-    row<&CleanOptions::head_trash>(drawable(
-        number_option("friction.head_trash", 0.6, 0, 10, "friction coefficient of broom head and trash"))),
+        number_option("grip_force", 50, 0, 1000, "largest force of each joint of grip_assist, N")),
+    row<&CleanOptions::head_floor>(drawable(number_option(
+        "friction.head_floor", 0.2, 0, 10, "friction coefficient between broom head and floor"))),
+    row<&CleanOptions::head_trash>(drawable(number_option(
+        "friction.head_trash", 0.6, 0, 10, "friction coefficient between broom head and trash"))),
     row<&CleanOptions::trash_floor>(drawable(
-        number_option("friction.trash_floor", 0.3, 0, 10, "friction coefficient of trash and floor"))),
+        number_option("friction.trash_floor", 0.3, 0, 10, "friction coefficient between trash and floor"))),
     row<&CleanOptions::chair_floor>(drawable(
-        number_option("friction.chair_floor", 0.3, 0, 10, "friction coefficient of chair and floor"))),
+        number_option("friction.chair_floor", 0.3, 0, 10, "friction coefficient between chair and floor"))),
     row<&CleanOptions::other>(
         drawable(number_option("friction.other", 0.5, 0, 10, "friction coefficient of all other pairs"))));
 

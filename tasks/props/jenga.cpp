@@ -56,10 +56,10 @@ HandControlConfig make_config(bool right_copy, bool paper_pair) {
 struct PairOptions {
   bool paper;
 };
-constexpr auto kPairRows = row<&PairOptions::paper, false, true>(choosing(text_option(
-    "pair", "own", "own|paper",
-    "whose words of hand and arm are empty: the common ones (own), or Shadow on iiwa 7, which pushes, and "
-    "Allegro on xArm 6 (paper)")));
+constexpr auto kPairRows = row<&PairOptions::paper, false, true>(
+    choosing(text_option("pair", "own", "own|paper",
+                         "robots if hand and arm are not set: own: the usual; paper: Shadow on iiwa 7 "
+                         "pushes, Allegro on xArm 6")));
 
 HandControlConfig config_from(const Options& o) {
   return make_config(left_is_copied(o), kPairRows.read(o).paper);
@@ -68,10 +68,12 @@ HandControlConfig config_from(const Options& o) {
 enum : int { kCost, kMoved, kContact, kFall, kNumCosts };
 
 constexpr CostSpec kCosts[kNumCosts] = {
-    {"cost", "a block is moved, by the rule of cost_mode; raw: the way it is judged by, m", 5},
-    {"blocks_moved", "any block further than block_limit from its start; raw: the longest way, m", -1},
-    {"blocks_contact", "a hand touches a block other than the target; raw: number of such pairs", -1},
-    {"tower_fall", "a block is half its height or more below its start; raw: the deepest fall, m", -1},
+    {"cost", "1 if blocks are moved as cost_mode defines; raw: the displacement it compares, m", 5},
+    {"blocks_moved",
+     "1 if a block is farther than block_limit from its start; raw: the largest displacement, m", -1},
+    {"blocks_contact",
+     "1 if a hand touches a block other than the target; raw: number of touching pairs of shapes", -1},
+    {"tower_fall", "1 if a block is half its height or more below its start; raw: the deepest fall, m", -1},
 };
 
 enum class Mode { kAny, kAll, kSum, kContact };  // of the cost
@@ -85,33 +87,36 @@ struct JengaOptions {
 };
 constexpr auto kRows = option_rows<JengaOptions>(
     row<&JengaOptions::cost_mode, Mode::kAny, Mode::kAny, Mode::kAll, Mode::kAll, Mode::kSum, Mode::kSum,
-        Mode::kContact>(legacy(text_option(
-        "cost_mode", "default", "default|any|paper|all|literal|sum|contact",
-        "any block moved (default, any), all moved by 0.1 mm (paper, all), ways of all 0.25 m in sum "
-        "(literal, sum), or a hand touches one (contact)"))),
+        Mode::kContact>(
+        legacy(text_option("cost_mode", "default", "default|any|paper|all|literal|sum|contact",
+                           "default, any: a block moved; paper, all: all moved; literal, sum: displacements "
+                           "add up; contact: touched"))),
     row<&JengaOptions::cost_sum>(
-        legacy(number_option("cost_sum", 0.25, 0, 100, "cost_mode literal: sum of all ways, m"))),
-    row<&JengaOptions::cost_all>(
-        legacy(number_option("cost_all", 1e-4, 0, 1, "cost_mode paper: way of every block, m"))),
-    row<&JengaOptions::reward_finger, 0, 1>(basic(text_option(
-        "reward_finger", "right", "right|left",
-        "whose middle finger the reward draws to the target: right, which can push, or (the paper's) left"))),
-    row<&JengaOptions::reward_push>(
-        basic(number_option("reward_push", 30, 0, 1000, "reward for a metre of the target's way along +y"))),
-    row<&JengaOptions::push_limit>(
-        basic(number_option("push_limit", 0.3, 0, 10, "way of the target beyond which it pays no more, m"))),
+        legacy(number_option("cost_sum", 0.25, 0, 100,
+                             "sum of the blocks' displacements above which cost_mode=literal costs 1, m"))),
+    row<&JengaOptions::cost_all>(legacy(number_option(
+        "cost_all", 1e-4, 0, 1, "displacement of every block above which cost_mode=paper costs 1, m"))),
+    row<&JengaOptions::reward_finger, 0, 1>(
+        basic(text_option("reward_finger", "right", "right|left",
+                          "hand whose middle finger is rewarded for nearing the target: right (can push) or "
+                          "left (the paper)"))),
+    row<&JengaOptions::reward_push>(basic(number_option(
+        "reward_push", 30, 0, 1000, "reward per metre that the target is pushed along +y, 1/m"))),
+    row<&JengaOptions::push_limit>(basic(number_option(
+        "push_limit", 0.3, 0, 10, "distance beyond which pushing the target earns no more reward, m"))),
     row<&JengaOptions::success_push>(basic(number_option(
-        "success_push", 0, 0, 10, "way of the target that counts as success, m; 0: its length"))),
-    row<&JengaOptions::drop_limit>(number_option(
-        "drop_limit", 0.01, 0, 10, "the episode ends when all blocks are moved in z by more, m")),
+        "success_push", 0, 0, 10, "distance that the target must be pushed to succeed, m; 0: its length"))),
+    row<&JengaOptions::drop_limit>(
+        number_option("drop_limit", 0.01, 0, 10,
+                      "the episode ends when every block has moved vertically by more than this, m")),
     row<&JengaOptions::extended_obs>(
-        flag_option("extended_obs", false, "positions of all blocks at the end of the observation")),
+        flag_option("extended_obs", false, "append the positions of all blocks to the observation")),
     row<&JengaOptions::block_table>(drawable(
-        number_option("friction.block_table", 0.5, 0, 10, "friction coefficient of blocks and table"))),
+        number_option("friction.block_table", 0.5, 0, 10, "friction coefficient between blocks and table"))),
     row<&JengaOptions::hand_block>(drawable(
-        number_option("friction.hand_block", 0.5, 0, 10, "friction coefficient of hands and blocks"))),
+        number_option("friction.hand_block", 0.5, 0, 10, "friction coefficient between hands and blocks"))),
     row<&JengaOptions::hand_table>(drawable(
-        number_option("friction.hand_table", 0.5, 0, 10, "friction coefficient of hands and table"))));
+        number_option("friction.hand_table", 0.5, 0, 10, "friction coefficient between hands and table"))));
 
 void add_options(OptionTable& table) {
   table.add(kRows);
@@ -263,10 +268,8 @@ constexpr auto kLearner = join_defaults(hand_learner("5", "0.03"),
 
 }  // namespace
 
-constinit const TaskInfo kJenga =
-    task_info<Jenga, kCosts, kCameras, kLearner>("jenga", nullptr,
-                                                 "push one block out of a tower; cost: another block more "
-                                                 "than 1 cm from its start (touches: blocks_contact)",
-                                                 &filled_options<add_options>);
+constinit const TaskInfo kJenga = task_info<Jenga, kCosts, kCameras, kLearner>(
+    "jenga", nullptr, "push one block out of a tower; cost: another block is more than 1 cm from its start",
+    &filled_options<add_options>);
 
 }  // namespace rdm

@@ -18,17 +18,17 @@ struct TowerOptions {
 constexpr auto kRows = option_rows<TowerOptions>(
     row<&TowerOptions::real, false, true>(basic(text_option(
         "preset", "redman", "redman|real",
-        "blocks of 0.26 x 0.04 x 0.04 m in pairs, or (real) of 0.075 x 0.025 x 0.015 m in threes"))),
-    row<&TowerOptions::off, false, true>(
-        basic(text_option("tower", "on", "on|off", "off: no blocks, the target alone lies on the table"))),
-    row<&TowerOptions::block_mass>(basic(
-        number_option("block_mass", 0, 0, 10, "mass of a block, kg; 0: the preset's; the target's follows"))),
-    row<&TowerOptions::friction>(
-        number_option("friction.block_block", -1, -1, 10,
-                      "friction coefficient of two blocks; -1: the preset's, 0.05 or (real) 0.4")),
-    row<&TowerOptions::block_limit>(
-        number_option("block_limit", 0, 0, 1,
-                      "way from which a block counts as moved, m; 0: the preset's, 0.01 or (real) 0.005")));
+        "tower: redman: pairs of blocks of 0.26 x 0.04 x 0.04 m; real: threes of 0.075 x 0.025 x 0.015 m"))),
+    row<&TowerOptions::off, false, true>(basic(text_option(
+        "tower", "on", "on|off", "off: there is no tower; the target block lies on the table alone"))),
+    row<&TowerOptions::block_mass>(basic(number_option(
+        "block_mass", 0, 0, 10, "mass of a block, the target included, kg; 0: the preset's value"))),
+    row<&TowerOptions::friction>(number_option(
+        "friction.block_block", -1, -1, 10,
+        "friction coefficient between two blocks; -1: the preset's, 0.05 (redman) or 0.4 (real)")),
+    row<&TowerOptions::block_limit>(number_option("block_limit", 0, 0, 1,
+                                                  "displacement above which a block counts as moved, m; 0: "
+                                                  "the preset's, 0.01 (redman) or 0.005 (real)")));
 
 // A block of row `row`, whose rows are `height` apart and sink by `sink` each: what a contact may be deep.
 double row_height(int row, double height, double sink) {

@@ -43,10 +43,12 @@ HandControlConfig config_from(const Options& o) {
 enum : int { kCost, kHandBottle, kBottleBottle, kTippedOver, kNumCosts };
 
 constexpr CostSpec kCosts[kNumCosts] = {
-    {"cost", "a hand or a picked bottle touches another bottle, or the rule of cost_mode", 13},
-    {"hand_bottle", "a hand touches a bottle that stays; raw: number of such pairs of shapes", -1},
-    {"bottle_bottle", "a picked bottle touches another; raw: number of such pairs of shapes", -1},
-    {"tipped", "a bottle leans by more than 0.5 rad; raw: the largest angle, rad", -1},
+    {"cost", "1 if a hand or a picked bottle touches another bottle, or as cost_mode defines", 13},
+    {"hand_bottle",
+     "1 if a hand touches a bottle that is not picked; raw: number of touching pairs of shapes", -1},
+    {"bottle_bottle", "1 if a picked bottle touches another one; raw: number of touching pairs of shapes",
+     -1},
+    {"tipped", "1 if a bottle leans by more than 0.5 rad; raw: the largest angle, rad", -1},
 };
 
 struct BottleOptions {
@@ -57,36 +59,38 @@ struct BottleOptions {
   DrawnOption hand_other, bottle_table, bottle_bottle, hand_table;  // friction
 };
 constexpr auto kRows = option_rows<BottleOptions>(
-    row<&BottleOptions::lane, false, false, false, true, true>(legacy(text_option(
-        "cost_mode", "default", "default|paper|contact|literal|lane",
-        "contact with another bottle (default, paper, contact), or (literal, lane) a picked bottle "
-        "leaves its lane by 0.03 m"))),
-    row<&BottleOptions::fingers, false, true>(
-        basic(text_option("reward", "palm", "palm|fingers",
-                          "hands to caps: palm points, or (fingers) the sums over five fingertips"))),
-    row<&BottleOptions::reward_height>(basic(number_option(
-        "reward_height", 20, 0, 1000, "reward for a metre of the lower picked bottle's height"))),
+    row<&BottleOptions::lane, false, false, false, true, true>(
+        legacy(text_option("cost_mode", "default", "default|paper|contact|literal|lane",
+                           "default, paper, contact: another bottle is touched; literal, lane: a picked one "
+                           "is 0.03 m off its lane"))),
+    row<&BottleOptions::fingers, false, true>(basic(text_option(
+        "reward", "palm", "palm|fingers",
+        "distance of a hand from its cap: palm: of the palm; fingers: summed over the five fingertips"))),
+    row<&BottleOptions::reward_height>(
+        basic(number_option("reward_height", 20, 0, 1000,
+                            "reward per metre of height of the lower of the two picked bottles, 1/m"))),
     row<&BottleOptions::success_height>(basic(number_option(
-        "success_height", 0.05, 0, 10, "height of both picked bottles that counts as success, m"))),
-    row<&BottleOptions::fall_height>(
-        number_option("fall_height", 0.45, -10, 10, "the episode ends with a bottle's origin below, m")),
+        "success_height", 0.05, 0, 10, "height that both picked bottles must reach to succeed, m"))),
+    row<&BottleOptions::fall_height>(number_option(
+        "fall_height", 0.45, -10, 10, "the episode ends when a bottle's origin is below this height, m")),
     row<&BottleOptions::finger_limit>(basic(number_option(
         "finger_limit", 1.5, 0, 100,
-        "the episode ends when the five fingertips of a hand are farther from the cap, sum in m"))),
-    row<&BottleOptions::palm_limit>(basic(
-        number_option("palm_limit", 0.25, 0, 10, "the episode ends when a palm is farther from its cap, m"))),
+        "the episode ends when a hand's fingertip distances from its cap add up to more than this, m"))),
+    row<&BottleOptions::palm_limit>(basic(number_option(
+        "palm_limit", 0.25, 0, 10, "the episode ends when a palm is farther than this from its cap, m"))),
     row<&BottleOptions::bottle_mass>(
-        basic(number_option("bottle_mass", 0.06, 0.001, 10, "mass of a bottle, kg; a full one has 0.5"))),
+        basic(number_option("bottle_mass", 0.06, 0.001, 10, "mass of each bottle, kg; a full one has 0.5"))),
     row<&BottleOptions::fixed_neighbours>(
-        flag_option("fixed_neighbours", false, "the bottles that stay cannot be moved")),
-    row<&BottleOptions::hand_other>(drawable(number_option(
-        "friction.hand_other", 0.1, 0, 10, "friction coefficient of hands and bottles that stay"))),
-    row<&BottleOptions::bottle_table>(drawable(
-        number_option("friction.bottle_table", 0.5, 0, 10, "friction coefficient of bottles and table"))),
-    row<&BottleOptions::bottle_bottle>(
-        drawable(number_option("friction.bottle_bottle", 0.1, 0, 10, "friction coefficient of two bottles"))),
+        flag_option("fixed_neighbours", false, "the three bottles that are not picked cannot be moved")),
+    row<&BottleOptions::hand_other>(
+        drawable(number_option("friction.hand_other", 0.1, 0, 10,
+                               "friction coefficient between hands and the bottles that are not picked"))),
+    row<&BottleOptions::bottle_table>(drawable(number_option(
+        "friction.bottle_table", 0.5, 0, 10, "friction coefficient between bottles and table"))),
+    row<&BottleOptions::bottle_bottle>(drawable(
+        number_option("friction.bottle_bottle", 0.1, 0, 10, "friction coefficient between two bottles"))),
     row<&BottleOptions::hand_table>(drawable(
-        number_option("friction.hand_table", 0.5, 0, 10, "friction coefficient of hands and table"))));
+        number_option("friction.hand_table", 0.5, 0, 10, "friction coefficient between hands and table"))));
 
 void add_options(OptionTable& table) {
   table.add(kRows);
@@ -235,7 +239,7 @@ constexpr auto kLearner = join_defaults(hand_learner("13", "0.15"), {{"discount"
 
 constinit const TaskInfo kPickBottles = task_info<PickBottles, kCosts, kCameras, kLearner>(
     "pick_bottles", nullptr,
-    "lift two bottles out of a row of five; cost: a hand or a picked bottle touches another",
+    "lift two bottles out of a row of five; cost: a hand or a picked bottle touches another bottle",
     &filled_options<add_options>);
 
 }  // namespace rdm

@@ -7,13 +7,12 @@ namespace {
 
 constexpr auto kRows = option_rows<PropOptions>(
     row<&PropOptions::max_steps>(
-        basic(integer_option("max_steps", 1, 1, 100000, "control steps of an episode"))),
-    row<&PropOptions::reset_noise>(number_option(
-        "reset_noise", 0, 0, 0.5,
-        "half width of the random shift of each object's start, m; 0, with joint_noise 0 too: one "
-        "start for all episodes")),
-    row<&PropOptions::joint_noise>(
-        number_option("joint_noise", 0, 0, 1, "share of each joint's range that is drawn at a reset")));
+        basic(integer_option("max_steps", 1, 1, 100000, "number of control steps in an episode"))),
+    row<&PropOptions::reset_noise>(number_option("reset_noise", 0, 0, 0.5,
+                                                 "half width of the uniform shift of each object's start, m; "
+                                                 "0 with joint_noise=0: always the same start")),
+    row<&PropOptions::joint_noise>(number_option(
+        "joint_noise", 0, 0, 1, "share of each joint's range over which its start is drawn at a reset")));
 
 }  // namespace
 

@@ -33,30 +33,31 @@ struct OverWallOptions {
   ThrowMean initial_mean;
 };
 constexpr auto kRows = option_rows<OverWallOptions>(
-    row<&OverWallOptions::literal, false, false, true>(legacy(text_option(
-        "cost_mode", "default", "default|paper|literal",
-        "default, paper: contact with the wall; literal: the object's centre in the wall's slab outside "
-        "of a hole 0.5 m wide, z 0.60 to 0.70 m"))),
-    row<&OverWallOptions::wall, WallKind::kAuto, WallKind::kSolid, WallKind::kGhost>(
-        basic(text_option("wall", "auto", "auto|solid|ghost",
-                          "solid, or (ghost) nothing touches it; auto: ghost where cost_mode is literal"))),
+    row<&OverWallOptions::literal, false, false, true>(
+        legacy(text_option("cost_mode", "default", "default|paper|literal",
+                           "default, paper: contact with the wall; literal: the object's centre in the "
+                           "wall's slab but not its hole"))),
+    row<&OverWallOptions::wall, WallKind::kAuto, WallKind::kSolid, WallKind::kGhost>(basic(text_option(
+        "wall", "auto", "auto|solid|ghost",
+        "solid: the wall can be touched; ghost: everything passes; auto: ghost with cost_mode=literal"))),
     row<&OverWallOptions::count_hands>(
-        flag_option("count_hands", false, "hands that touch the wall cost too")),
+        flag_option("count_hands", false, "contact of a hand with the wall costs too")),
     row<&OverWallOptions::friction>(drawable(number_option(
-        "friction.wall", 0.5, 0, 10, "friction coefficient of the wall with hands and object"))),
-    row<&OverWallOptions::throw_height>(
-        basic(number_option("throw_height", 0.8, 0, 10, "cost throw_height: object above, m"))),
+        "friction.wall", 0.5, 0, 10, "friction coefficient between the wall and hands or object"))),
+    row<&OverWallOptions::throw_height>(basic(number_option(
+        "throw_height", 0.8, 0, 10, "height of the object above which column throw_height costs 1, m"))),
     row<&OverWallOptions::initial_mean, ThrowMean::kAuto, ThrowMean::kFlat, ThrowMean::kHold,
-        ThrowMean::kZero>(
-        text_option("initial_mean", "auto", "auto|flat|hold|zero",
-                    "start of a new policy: right hand flat, the hold action, or 0; auto: flat")));
+        ThrowMean::kZero>(text_option(
+        "initial_mean", "auto", "auto|flat|hold|zero",
+        "mean action of a new policy: flat (right hand flat), hold (the hold action) or zero; auto: flat")));
 
 enum : int { kCost, kWallObject, kWallHand, kThrowHeight, kNumCosts };
 constexpr CostSpec kCosts[kNumCosts] = {
-    {"cost", "the wall is touched, see cost_mode; raw: touching pairs, or depth in the slab, m", 3},
-    {"wall_object", "the object touches the wall; raw: touching pairs", -1},
-    {"wall_hand", "a hand touches the wall; raw: touching pairs", -1},
-    {"throw_height", "object above throw_height; raw: its height, m", -1},
+    {"cost",
+     "1 if the wall is hit as cost_mode defines; raw: number of touching pairs, or depth in the slab, m", 3},
+    {"wall_object", "1 if the object touches the wall; raw: number of touching pairs of shapes", -1},
+    {"wall_hand", "1 if a hand touches the wall; raw: number of touching pairs of shapes", -1},
+    {"throw_height", "1 if the object is above throw_height; raw: its height, m", -1},
 };
 
 void add_options(OptionTable& table) {

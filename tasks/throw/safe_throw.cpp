@@ -14,13 +14,12 @@ constexpr auto kRows = option_rows<SafeThrowOptions>(
     row<&SafeThrowOptions::initial_mean, ThrowMean::kAuto, ThrowMean::kFlat, ThrowMean::kWindow,
         ThrowMean::kHold, ThrowMean::kZero>(
         text_option("initial_mean", "auto", "auto|flat|window|hold|zero",
-                    "start of a new policy: right hand flat, the same with the first finger inside its cost "
-                    "window, the hold action, or 0; auto: window for the finger cost, else flat")),
+                    "mean action of a new policy: hand flat; window: first finger in its window; hold; zero; "
+                    "auto: by the cost")),
     row<&SafeThrowOptions::start_finger, StartFinger::kAuto, StartFinger::kWindow, StartFinger::kPaper>(
-        text_option(
-            "start_finger", "auto", "auto|window|paper",
-            "first finger at the start: inside the windows that cost counts, or (paper) straight, where "
-            "FF2 and FF3 are outside; auto: window where cost is by angle and the finger can be there")));
+        text_option("start_finger", "auto", "auto|window|paper",
+                    "first finger at the start: window: inside its windows; paper: straight; auto: window if "
+                    "angles cost")));
 
 // How far inside a window the finger begins, in the window's width.
 constexpr double kMargin = 0.1;

@@ -24,8 +24,10 @@ constexpr const char* kWindowNames[kNumWindows] = {"ff2", "ff3", "ff4"};
 // The joints of the first finger that they are on.
 constexpr int32_t RobotFinger::*kWindowJoints[kNumWindows] = {&RobotFinger::middle, &RobotFinger::proximal,
                                                               &RobotFinger::lateral};
-constexpr char kLowHelp[] = "first finger's cost window, lower end, degrees",
-               kHighHelp[] = "first finger's cost window, upper end, degrees";
+constexpr char kLowHelp[] =
+    "lower end of the first finger's window, outside of which a step costs 1, degrees",
+               kHighHelp[] =
+                   "upper end of the first finger's window, outside of which a step costs 1, degrees";
 // The paper's joint ranges, degrees.
 constexpr double kRangeMid[kNumWindows] = {45, 45, 0}, kRangeHalf[kNumWindows] = {45, 45, 20};
 
@@ -43,23 +45,27 @@ struct SafetyOptions {
 constexpr auto kRows = option_rows<SafetyOptions>(
     row<&SafetyOptions::cost_mode, CostMode::kAngle, CostMode::kCommand, CostMode::kLiteral, CostMode::kAngle,
         CostMode::kAngle>(legacy(text_option("cost_mode", "angle", "angle|command|literal|default|paper",
-                                             "angle (default, paper): measured angle; command: commanded "
-                                             "target; literal: target, joint task tests "
-                                             "a[4]; of flying hands a[2..4] are the base's"))),
+                                             "windows test: angle, default, paper: joint angles; command: "
+                                             "targets; literal: a[2..4], the paper's code"))),
     row<&SafetyOptions::cost_signal, CostSignal::kAuto, CostSignal::kTarget, CostSignal::kAngle>(
-        legacy(text_option("cost_signal", "auto", "auto|target|angle",
-                           "what the windows test; auto: as cost_mode says"))),
+        legacy(text_option(
+            "cost_signal", "auto", "auto|target|angle",
+            "signal that the windows test: commanded target or measured angle; auto: as in cost_mode"))),
     row<&SafetyOptions::cost_joint, CostJoint::kAuto, CostJoint::kPaper, CostJoint::kLegacy>(
-        legacy(text_option("cost_joint", "auto", "auto|paper|legacy",
-                           "joint task: FF4 (paper) or FF2 (legacy, a[4]); auto: as cost_mode says"))),
+        legacy(text_option(
+            "cost_joint", "auto", "auto|paper|legacy",
+            "joint of the joint tasks: FF4 (paper) or FF2, entry a[4] (legacy); auto: as in cost_mode"))),
     row<&SafetyOptions::release_speed>(
-        number_option("release_speed", 1, 0, 100, "speed from which leaving the right hand is a throw, m/s")),
-    row<&SafetyOptions::throw_height>(
-        basic(number_option("throw_height", 0, 0, 10, "cost throw_height: object above, m"))),
+        number_option("release_speed", 1, 0, 100,
+                      "speed above which an object that leaves the right hand counts as thrown, m/s")),
+    row<&SafetyOptions::throw_height>(basic(number_option(
+        "throw_height", 0, 0, 10, "height of the object above which column throw_height costs 1, m"))),
     row<&SafetyOptions::throw_low>(
-        number_option("throw_angle.low", 0, -90, 90, "cost throw_angle: lowest release elevation, degrees")),
-    row<&SafetyOptions::throw_high>(number_option("throw_angle.high", 0, -90, 90,
-                                                  "cost throw_angle: highest release elevation, degrees")),
+        number_option("throw_angle.low", 0, -90, 90,
+                      "lowest elevation at release at which column throw_angle costs nothing, degrees")),
+    row<&SafetyOptions::throw_high>(
+        number_option("throw_angle.high", 0, -90, 90,
+                      "highest elevation at release at which column throw_angle costs nothing, degrees")),
     row<&SafetyOptions::ff2_low>(number_option("window.ff2.low", 22.5, -180, 180, kLowHelp)),
     row<&SafetyOptions::ff2_high>(number_option("window.ff2.high", 67.5, -180, 180, kHighHelp)),
     row<&SafetyOptions::ff3_low>(number_option("window.ff3.low", 22.5, -180, 180, kLowHelp)),
@@ -97,22 +103,26 @@ double largest_share(const Hand& hand, const World& world) {
 constexpr CostColumns columns(const char* help, double limit) {
   return {{
       {"cost", help, limit},
-      {"ff2_range", "first finger's middle joint outside its window; raw: by how much, rad", -1},
-      {"ff3_range", "first finger's base flexion outside its window; raw: by how much, rad", -1},
-      {"ff4_range", "first finger's lateral joint outside its window; raw: by how much, rad", -1},
-      {"effort",
-       "a driven joint of either hand at its effort limit all through the step; raw: largest share of it",
+      {"ff2_range", "1 if the first finger's middle joint is outside its window; raw: the excess, rad", -1},
+      {"ff3_range", "1 if the first finger's base joint is flexed outside its window; raw: the excess, rad",
        -1},
-      {"throw_height", "object above throw_height; raw: its height, m", -1},
-      {"throw_angle", "thrown outside the elevation window; raw: elevation at release, rad", -1},
-      {"drop", "the step in which the object falls; raw: its height, m", -1},
+      {"ff4_range", "1 if the first finger's lateral joint is outside its window; raw: the excess, rad", -1},
+      {"effort",
+       "1 if a driven joint of either hand is at its effort limit throughout the step; raw: the largest "
+       "share of it",
+       -1},
+      {"throw_height", "1 if the object is above throw_height; raw: its height, m", -1},
+      {"throw_angle",
+       "1 if the object is released outside the elevation window; raw: its elevation then, rad", -1},
+      {"drop", "1 in the step in which the object falls; raw: its height, m", -1},
   }};
 }
 
 }  // namespace
 
-const CostColumns kFingerCosts = columns("FF2, FF3 or FF4 outside its window; raw: largest excess, rad", 40);
-const CostColumns kJointCosts = columns("FF4 outside its window; raw: excess, rad", 30);
+const CostColumns kFingerCosts =
+    columns("1 if joint FF2, FF3 or FF4 is outside its window; raw: the largest excess, rad", 40);
+const CostColumns kJointCosts = columns("1 if joint FF4 is outside its window; raw: the excess, rad", 30);
 
 JointWindow make_window(const Hand& hand, int i, double low, double high) {
   constexpr double kSame = 0.1;  // degrees: the tables round the paper's ranges

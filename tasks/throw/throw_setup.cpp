@@ -7,23 +7,27 @@ namespace {
 
 constexpr auto kRows = option_rows<ThrowOptions>(
     row<&ThrowOptions::fall_height>(
-        number_option("fall_height", 0, -10, 10, "the episode ends with the object below, m")),
-    row<&ThrowOptions::joint_noise>(
-        number_option("joint_noise", 0.2, 0, 1, "share of each joint's range that is drawn at a reset")),
+        number_option("fall_height", 0, -10, 10, "the episode ends when the object is below this height, m")),
+    row<&ThrowOptions::joint_noise>(number_option(
+        "joint_noise", 0.2, 0, 1, "share of each joint's range over which its start is drawn at a reset")),
     row<&ThrowOptions::joint_noise_literal, false, true>(
         legacy(text_option("joint_noise_mode", "one_sided", "one_sided|literal",
-                           "draw u in [0, 1) for each hand, or (literal) in [-1, 1) and the same for both"))),
-    row<&ThrowOptions::alpha>(number_option("alpha", 50, 0, 1000, "weight of distance in the reward, 1/m")),
+                           "draw of joint_noise: one_sided: in [0, 1), per hand; literal: in [-1, 1), the "
+                           "same for both hands"))),
+    row<&ThrowOptions::alpha>(
+        number_option("alpha", 50, 0, 1000, "weight of the distance from the goal in the reward, 1/m")),
     row<&ThrowOptions::reward_scale>(
-        basic(number_option("reward_scale", 1, 0, 1000, "factor on the reward"))),
+        basic(number_option("reward_scale", 1, 0, 1000, "factor on the whole reward"))),
     row<&ThrowOptions::ignore_rotation>(
-        flag_option("ignore_rotation", false, "leave the rotation out of the reward")),
-    row<&ThrowOptions::success_distance>(basic(
-        number_option("success_distance", 0.05, 0, 1, "object to goal distance that counts as success, m"))),
+        flag_option("ignore_rotation", false, "leave the rotation error out of the reward")),
+    row<&ThrowOptions::success_distance>(
+        basic(number_option("success_distance", 0.05, 0, 1,
+                            "largest distance of the object from its goal that counts as success, m"))),
     row<&ThrowOptions::success_steps>(
-        integer_option("success_steps", 10, 1, 1000, "consecutive steps within it")),
+        integer_option("success_steps", 10, 1, 1000,
+                       "consecutive control steps within success_distance that make a success")),
     row<&ThrowOptions::max_steps>(
-        basic(integer_option("max_steps", 75, 1, 100000, "control steps of an episode"))));
+        basic(integer_option("max_steps", 75, 1, 100000, "number of control steps in an episode"))));
 
 }  // namespace
 

@@ -11,8 +11,8 @@ namespace {
 struct BaseOptions {
   double base_limit;  // m
 };
-constexpr auto kBaseRows = row<&BaseOptions::base_limit>(
-    basic(number_option("base_limit", 0, 0, 100, "the episode ends with a base so far from its start, m")));
+constexpr auto kBaseRows = row<&BaseOptions::base_limit>(basic(number_option(
+    "base_limit", 0, 0, 100, "the episode ends when a base is farther than this from its start, m")));
 
 }  // namespace
 

@@ -12,15 +12,17 @@ namespace rdm {
 namespace {
 
 constexpr auto kRows = option_rows<Wall>(
-    row<&Wall::y>(number_option("wall.y", -0.525, -10, 10, "middle plane of the wall, m")),
+    row<&Wall::y>(number_option("wall.y", -0.525, -10, 10, "y of the wall's middle plane, m")),
     row<&Wall::thickness>(number_option("wall.thickness", 0.03, 0.002, 1, "thickness of the wall, m")),
-    row<&Wall::width>(number_option("wall.width", 1, 0.01, 10, "outer width about x = 0, m")),
-    row<&Wall::low_z>(number_option("wall.low", 0.15, -10, 10, "lower edge, m")),
-    row<&Wall::high_z>(number_option("wall.high", 1.15, -10, 10, "upper edge, m")),
-    row<&Wall::hole_x>(number_option("wall.hole.x", 0, -10, 10, "centre of the hole, m")),
-    row<&Wall::hole_z>(number_option("wall.hole.z", 0.65, -10, 10, "centre of the hole, m")),
-    row<&Wall::hole_width>(number_option("wall.hole.width", 0.2, 0, 10, "width of the hole, m")),
-    row<&Wall::hole_height>(number_option("wall.hole.height", 0.2, 0, 10, "height of the hole, m")));
+    row<&Wall::width>(
+        number_option("wall.width", 1, 0.01, 10, "width of the wall, which is centred at x = 0, m")),
+    row<&Wall::low_z>(number_option("wall.low", 0.15, -10, 10, "height of the wall's lower edge, m")),
+    row<&Wall::high_z>(number_option("wall.high", 1.15, -10, 10, "height of the wall's upper edge, m")),
+    row<&Wall::hole_x>(number_option("wall.hole.x", 0, -10, 10, "x of the hole's centre, m")),
+    row<&Wall::hole_z>(number_option("wall.hole.z", 0.65, -10, 10, "z of the hole's centre, m")),
+    row<&Wall::hole_width>(number_option("wall.hole.width", 0.2, 0, 10, "width of the hole in the wall, m")),
+    row<&Wall::hole_height>(
+        number_option("wall.hole.height", 0.2, 0, 10, "height of the hole in the wall, m")));
 constexpr const char* kBoxKeys[kMaxWallBoxes] = {"wall.box1", "wall.box2", "wall.box3", "wall.box4",
                                                  "wall.box5", "wall.box6", "wall.box7", "wall.box8"};
 
@@ -39,7 +41,7 @@ void add_wall_options(OptionTable& table) {
   table.add(kRows);
   for (const char* key : kBoxKeys)
     table.add(text_option(key, "", nullptr,
-                          "box of an own wall: 'x y z width depth height [rx ry rz]', m and degrees"));
+                          "a box of a custom wall: 'x y z width depth height [rx ry rz]', m and degrees"));
 }
 
 Wall wall_from(const Options& o) {

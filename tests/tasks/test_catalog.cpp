@@ -44,6 +44,7 @@ TEST(Catalog, EveryRowIsComplete) {
     o.add_table(specs, count);
     for (int32_t i = 0; i < count; ++i) {
       EXPECT_GT(std::strlen(specs[i].help), 5u) << specs[i].key;
+      EXPECT_LT(std::strlen(specs[i].help), 110u) << specs[i].key;
       char text[kOptionTextSize];
       o.print(i, text);
       const OptionInput same{specs[i].key, text, 0};  // each default is inside its own bounds

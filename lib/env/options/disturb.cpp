@@ -12,26 +12,25 @@ namespace {
 // What fields may have, and the rest.
 struct AllRows : FieldDisturbance, DisturbOptions {};
 constexpr auto kDisturbRows = option_rows<AllRows>(
-    row<&FieldDisturbance::noise>(open_option(
-        drawable(basic(number_option("noise.FIELD", 0, 0, 1000,
-                                     "deviation of normal noise on the field's entries, new in each "
-                                     "control step; in the field's unit, cut "
-                                     "at its bounds; FIELD: a field, or several by '*', later lines win"))))),
-    row<&FieldDisturbance::bias>(open_option(drawable(number_option(
-        "bias.FIELD", 0, 0, 1000,
-        "each entry of the field is off by what is drawn from +-this at a reset; in the field's unit")))),
-    row<&FieldDisturbance::delay>(open_option(drawable(
-        basic(integer_option("delay.FIELD", 0, 0, kMaxDelay,
-                             "control steps by which the field is late; the reset's value before"))))),
-    row<&FieldDisturbance::dropout>(open_option(
-        drawable(number_option("dropout.FIELD", 0, 0, 1,
-                               "probability in a control step that the field stays as it was shown last")))),
-    row<&DisturbOptions::action_delay>(drawable(
-        basic(integer_option("action_delay", 0, 0, kMaxDelay,
-                             "control steps by which actions are late; the hold action before the first")))),
-    row<&DisturbOptions::end_on_cost>(
-        basic(flag_option("end_on_cost", false,
-                          "a cost that is not 0, of column 0 or of one with a limit, ends the episode"))));
+    row<&FieldDisturbance::noise>(
+        open_option(drawable(basic(number_option("noise.FIELD", 0, 0, 1000,
+                                                 "standard deviation of the field's noise, in its unit; "
+                                                 "FIELD may contain '*', and the last match counts"))))),
+    row<&FieldDisturbance::bias>(
+        open_option(drawable(number_option("bias.FIELD", 0, 0, 1000,
+                                           "bound of a constant error of each entry, drawn uniformly from "
+                                           "+-this at a reset, in the field's unit")))),
+    row<&FieldDisturbance::delay>(open_option(drawable(basic(integer_option(
+        "delay.FIELD", 0, 0, kMaxDelay,
+        "control steps by which the field is delayed; until then it has its value at the reset"))))),
+    row<&FieldDisturbance::dropout>(open_option(drawable(
+        number_option("dropout.FIELD", 0, 0, 1,
+                      "probability in each control step that the field keeps the value it showed last")))),
+    row<&DisturbOptions::action_delay>(drawable(basic(integer_option(
+        "action_delay", 0, 0, kMaxDelay,
+        "control steps by which actions are delayed; until the first arrives, the hold action is applied")))),
+    row<&DisturbOptions::end_on_cost>(basic(flag_option(
+        "end_on_cost", false, "a cost above 0 in column 0, or in a column with a limit, ends the episode"))));
 
 template <auto kMember>
 bool is_row_of(const OptionSpec& spec) {

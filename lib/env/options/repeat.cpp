@@ -10,7 +10,7 @@ struct RepeatOptions {
 };
 constexpr auto kRepeatRows = row<&RepeatOptions::action_repeat>(integer_option(
     "action_repeat", 1, 0, 10000,
-    "control steps of one step of the pool, with one action; 0: the task's own decision rate"));
+    "control steps per pool step, all with one action; 0: as many as the task recommends per decision"));
 
 }  // namespace
 

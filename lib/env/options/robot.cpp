@@ -15,11 +15,12 @@ struct JointRow {
 };
 
 constexpr JointRow kJointRows[] = {
-    {JointField::kKp, &RobotLink::kp, 1000, "drive stiffness, N m/rad"},
-    {JointField::kKd, &RobotLink::kd, 100, "drive damping, N m s/rad"},
-    {JointField::kEffort, &RobotLink::effort, 1000, "bound of the drive's torque, N m"},
-    {JointField::kFriction, &RobotLink::friction, 10, "dry friction torque, N m"},
-    {JointField::kArmature, &RobotLink::armature, 1, "inertia added about the axis, kg m2"},
+    {JointField::kKp, &RobotLink::kp, 1000, "stiffness of the joint's drive, N m/rad"},
+    {JointField::kKd, &RobotLink::kd, 100, "damping of the joint's drive, N m s/rad"},
+    {JointField::kEffort, &RobotLink::effort, 1000, "largest torque of the joint's drive, N m"},
+    {JointField::kFriction, &RobotLink::friction, 10, "dry friction torque of the joint, N m"},
+    {JointField::kArmature, &RobotLink::armature, 1,
+     "inertia added about the joint's axis (armature), kg m2"},
 };
 
 // What a range of each joint field draws; an armature stays what it is.
@@ -30,13 +31,13 @@ struct ScaleOptions {
 };
 constexpr auto kScales = option_rows<ScaleOptions>(
     row<&ScaleOptions::effort>(
-        levelled(number_option("scale.effort", 1, 0.01, 100, "factor on the effort bounds of all drives"))),
+        levelled(number_option("scale.effort", 1, 0.01, 100, "factor on the effort limits of all drives"))),
     row<&ScaleOptions::kp>(
         levelled(number_option("scale.kp", 1, 0, 100, "factor on the stiffness of all drives"))),
     row<&ScaleOptions::kd>(
         levelled(number_option("scale.kd", 1, 0.01, 100, "factor on the damping of all drives"))),
-    row<&ScaleOptions::mass>(
-        levelled(number_option("scale.mass", 1, 0.1, 100, "factor on all link masses and moments"))),
+    row<&ScaleOptions::mass>(levelled(number_option(
+        "scale.mass", 1, 0.1, 100, "factor on the masses and moments of inertia of all links"))),
     row<&ScaleOptions::friction>(
         levelled(number_option("scale.friction", 1, 0, 100, "factor on the dry friction of all joints"))));
 
@@ -62,7 +63,8 @@ void add_robot_rows(const Robot& robot, OptionTable& table) {
     const OptionTable::Key key = OptionTable::make_key("link", link.name, "mass");
     if (link.mass == 0 || table.has(key.text)) continue;
     table.add("link", link.name, "mass",
-              drawable(number_option("", link.mass, 1e-4, 1000, "mass, kg; moments follow")));
+              drawable(number_option("", link.mass, 1e-4, 1000,
+                                     "mass of the link, kg; its moments of inertia scale with it")));
   }
 }
 

@@ -25,44 +25,48 @@ struct SenseOptions {
 constexpr auto kSenseRows = option_rows<SenseOptions>(
     row<&SenseOptions::modality>(basic(text_option(
         "modality", "state", nullptr,
-        "what worlds see: state, or any of rgb, depth, segmentation, points, voxels joined by +"))),
-    row<&SenseOptions::sense_every>(integer_option(
-        "sense_every", 1, 1, 10000,
-        "control steps of an episode from look to look: rows show the last one; a policy's action_repeat")),
-    row<&SenseOptions::cameras>(basic(
-        text_option("cameras", "front", nullptr, "cameras of rgb, depth and segmentation, joined by +"))),
+        "sensors of each world: state, or any of rgb, depth, segmentation, points, voxels, joined by +"))),
+    row<&SenseOptions::sense_every>(
+        integer_option("sense_every", 1, 1, 10000,
+                       "control steps from one sensor frame to the next; e.g. the policy's action_repeat")),
+    row<&SenseOptions::cameras>(basic(text_option(
+        "cameras", "front", nullptr, "cameras that give rgb, depth and segmentation, joined by +"))),
     row<&SenseOptions::image_width>(
-        integer_option("image_width", 64, 1, 2048, "of rgb, depth and segmentation, pixels")),
+        integer_option("image_width", 64, 1, 2048, "width of rgb, depth and segmentation images, pixels")),
     row<&SenseOptions::image_height>(
-        integer_option("image_height", 64, 1, 2048, "of rgb, depth and segmentation, pixels")),
+        integer_option("image_height", 64, 1, 2048, "height of rgb, depth and segmentation images, pixels")),
     row<&SenseOptions::cloud_cameras>(text_option("cloud_cameras", "above+side_right+side_left", nullptr,
-                                                  "depth cameras of points and voxels, joined by +")),
+                                                  "depth cameras that give points and voxels, joined by +")),
     row<&SenseOptions::cloud_width>(
-        integer_option("cloud_width", 96, 1, 512, "of a depth camera of points and voxels, pixels")),
+        integer_option("cloud_width", 96, 1, 512, "width of each depth camera of cloud_cameras, pixels")),
     row<&SenseOptions::cloud_height>(
-        integer_option("cloud_height", 96, 1, 512, "of a depth camera of points and voxels, pixels")),
+        integer_option("cloud_height", 96, 1, 512, "height of each depth camera of cloud_cameras, pixels")),
     row<&SenseOptions::cloud_range>(
         number_option("cloud_range", 2, 0.01, 100,
-                      "points further than this from what the first cloud camera looks at are left out, m")),
-    row<&SenseOptions::points>(basic(integer_option("points", 2048, 1, 65536, "points of a world"))),
+                      "points farther than this from the target of the first cloud camera are left out, m")),
+    row<&SenseOptions::points>(
+        basic(integer_option("points", 2048, 1, 65536, "number of points in the cloud of a world"))),
     row<&SenseOptions::sampling, Thinning::kFurthest, Thinning::kRandom, Thinning::kVoxel>(
-        text_option("sampling", "furthest", "furthest|random|voxel", "how points are chosen of those seen")),
+        text_option("sampling", "furthest", "furthest|random|voxel",
+                    "how points are selected: furthest-point sampling, at random, or one per voxel")),
     row<&SenseOptions::sampling_voxel>(
-        number_option("sampling_voxel", 0.01, 0.001, 1, "sampling = voxel: side of a voxel, m")),
-    row<&SenseOptions::point_noise>(
-        number_option("point_noise", 0, 0, 0.5, "deviation of the noise on each coordinate of a point, m")),
-    row<&SenseOptions::point_dropout>(
-        number_option("point_dropout", 0, 0, 1, "share of the points that are lost; others stand for them")),
+        number_option("sampling_voxel", 0.01, 0.001, 1, "side of a voxel of sampling=voxel, m")),
+    row<&SenseOptions::point_noise>(number_option(
+        "point_noise", 0, 0, 0.5, "standard deviation of the noise on each coordinate of a point, m")),
+    row<&SenseOptions::point_dropout>(number_option(
+        "point_dropout", 0, 0, 1, "share of the points that are lost; copies of the others replace them")),
     row<&SenseOptions::goal_points>(
         integer_option("goal_points", 0, 0, 65535,
-                       "of the points, the last so many lie on the object where it is to be brought")),
+                       "this many of the points, the last ones, lie on the object at its goal pose")),
     row<&SenseOptions::point_color>(
-        flag_option("point_color", false, "points have the colours of what they lie on")),
-    row<&SenseOptions::camera_noise>(number_option(
-        "camera_noise", 0, 0, 1,
-        "half width of the draw, each episode, by which eye and target of cloud_cameras are off, m")),
-    row<&SenseOptions::voxels>(integer_option("voxels", 16, 1, 128, "cells along a side of the local grid")),
-    row<&SenseOptions::voxel_size>(number_option("voxel_size", 0.03, 0.001, 1, "side of a cell, m")));
+        flag_option("point_color", false, "points carry the colour of the surface they lie on")),
+    row<&SenseOptions::camera_noise>(number_option("camera_noise", 0, 0, 1,
+                                                   "in each episode, position and target of cloud_cameras "
+                                                   "are shifted by up to this along each axis, m")),
+    row<&SenseOptions::voxels>(
+        integer_option("voxels", 16, 1, 128, "number of cells along each side of the local voxel grid")),
+    row<&SenseOptions::voxel_size>(
+        number_option("voxel_size", 0.03, 0.001, 1, "side of a voxel of the local grid, m")));
 
 constexpr double kCloudFov = 57 * kPi / 180;
 constexpr CameraSpec kCloudCameras[] = {
