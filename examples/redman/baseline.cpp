@@ -75,23 +75,23 @@ Report run_baseline(const BaselineFlags& flags) {
 void add_baseline(CLI::App& app, Run& run) {
   auto flags = std::make_shared<BaselineFlags>();
   flags->pool.envs = kEvalEnvs;
-  CLI::App* command = app.add_subcommand("baseline",
-                                         "Evaluate zero, hold, random, demonstrations and bundled policies "
-                                         "on every task");
-  command->add_option("--task,--env-id", flags->tasks, "task; repeatable; default: all")
+  CLI::App* command = app.add_subcommand(
+      "baseline",
+      "Evaluate the baselines zero, hold and random, demonstrations and bundled policies on every task");
+  command->add_option("--task,--env-id", flags->tasks, "task, by name; repeatable; default: all tasks")
       ->allow_extra_args(false);
   command
       ->add_option("--policy", flags->policies,
-                   "zero, hold, random, demo or trained; repeatable; default: all but trained")
+                   "baseline: zero, hold, random, demo or trained; repeatable; default: all but trained")
       ->allow_extra_args(false)
       ->check(one_of({"zero", "hold", "random", "demo", "trained"}));
   add_envs_flag(*command, flags->pool);
-  command->add_option("--threads", flags->pool.threads, "threads; 0: the caller's own");
+  command->add_option("--threads", flags->pool.threads, "number of threads; 0: the calling thread alone");
   add_robot_flag(*command);
-  command->add_option("--seed", flags->pool.seed, "seed of worlds and random actions");
-  command->add_option("--episodes", flags->episodes, "episodes of each policy")
+  command->add_option("--seed", flags->pool.seed, "seed of the worlds and the random actions");
+  command->add_option("--episodes", flags->episodes, "number of episodes of each baseline")
       ->check(CLI::Range(1, kMostEpisodes));
-  command->add_flag("--markdown", flags->markdown, "the text as a Markdown table");
+  command->add_flag("--markdown", flags->markdown, "print a Markdown table");
   command->callback([&run, flags] { run = [flags] { return run_baseline(*flags); }; });
 }
 

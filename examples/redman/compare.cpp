@@ -121,21 +121,20 @@ Report run_compare(const CompareFlags& flags) {
 void add_compare(CLI::App& app, Run& run) {
   auto flags = std::make_shared<CompareFlags>();
   CLI::App* command = app.add_subcommand("compare",
-                                         "Tell algorithms apart by the scores of their runs: interquartile "
-                                         "means, intervals, groups with a letter "
-                                         "each whose members' differences have intervals that hold 0");
-  command->add_option("file", flags->file, "CSV file: a header, a line for each run")->required();
-  command->add_option("--of", flags->columns.of, "column of what is compared")->type_name("COLUMN");
+                                         "Compare algorithms by the scores of their runs: interquartile "
+                                         "means with intervals, and groups that do not differ significantly");
+  command->add_option("file", flags->file, "CSV file: a header line, then one line for each run")->required();
+  command->add_option("--of", flags->columns.of, "column whose values are compared")->type_name("COLUMN");
   command
       ->add_option("--over", flags->columns.over,
-                   "column of the tasks, whose scores are to be of one scale; none: runs of one task")
+                   "column of the tasks; their scores must be on one scale; none: all runs are of one task")
       ->type_name("COLUMN");
-  command->add_option("--value", flags->columns.value, "column of the scores")->type_name("COLUMN");
-  command->add_option("--where", flags->where, "only lines with this text in the column; repeatable")
+  command->add_option("--value", flags->columns.value, "column that holds the scores")->type_name("COLUMN");
+  command->add_option("--where", flags->where, "use only lines with this text in the column; repeatable")
       ->allow_extra_args(false)
       ->type_name("COLUMN=TEXT");
-  command->add_flag("--less", flags->less, "less is better");
-  command->add_flag("--markdown", flags->markdown, "the text as a Markdown table");
+  command->add_flag("--less", flags->less, "a smaller score is better");
+  command->add_flag("--markdown", flags->markdown, "print a Markdown table");
   command->callback([&run, flags] { run = [flags] { return run_compare(*flags); }; });
 }
 

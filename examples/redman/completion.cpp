@@ -220,8 +220,8 @@ Report run_completion(const CLI::App& app, const std::string& shell) {
 void add_completion(CLI::App& app, Run& run) {
   auto shell = std::make_shared<std::string>();
   CLI::App* command =
-      app.add_subcommand("completion", "Print a script that completes this tool's command line");
-  command->add_option("shell", *shell, "bash, zsh or fish")
+      app.add_subcommand("completion", "Print a shell script that completes command lines of this tool");
+  command->add_option("shell", *shell, "shell: bash, zsh or fish")
       ->required()
       ->check(one_of({"bash", "zsh", "fish"}));
   command->callback([&app, &run, shell] { run = [&app, shell] { return run_completion(app, *shell); }; });

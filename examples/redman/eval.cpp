@@ -119,14 +119,14 @@ void add_eval(CLI::App& app, Run& run) {
   flags->pool.envs = kEvalEnvs;
   CLI::App* command = app.add_subcommand("eval",
                                          "Evaluate a policy over whole episodes: means with standard errors "
-                                         "and 95% intervals, quantiles, and the mean of the worst tenth");
-  command->add_option(
-      "--policy", flags->policy,
-      "policy file, run folder, .demo file, trained, plan, demo, zero, hold or random; a run brings "
-      "its task options");
-  CLI::Option* task =
-      add_pool_flags(*command, flags->pool, "task, or its file (.task); default: the policy's");
-  command->add_option("--episodes", flags->episodes, "episodes")->check(CLI::Range(1, kMostEpisodes));
+                                         "and 95% intervals, quantiles, mean of the worst tenth");
+  command->add_option("--policy", flags->policy,
+                      "policy file, run folder, .demo file, trained, plan, demo, zero, hold or random; a run "
+                      "sets its task's options");
+  CLI::Option* task = add_pool_flags(*command, flags->pool,
+                                     "task, by name or by its file (.task); default: the policy's task");
+  command->add_option("--episodes", flags->episodes, "number of episodes")
+      ->check(CLI::Range(1, kMostEpisodes));
   command->add_flag("--stochastic", flags->stochastic, "sample actions instead of taking the mean");
   add_shield_flag(*command, flags->shield);
   add_cost_limit_flag(*command, flags->limits);

@@ -189,29 +189,31 @@ void add_export(CLI::App& app, Run& run) {
   auto flags = std::make_shared<ExportFlags>();
   CLI::App* command = app.add_subcommand("export", "Write a policy as C source, ONNX or safetensors");
   command->add_option("--policy", flags->policy, "policy file, run folder, or trained:TASK")->required();
-  CLI::Option* c = command->add_option("--c", flags->c,
-                                       "C99 file to write: one function that needs no heap and no library");
+  CLI::Option* c =
+      command->add_option("--c", flags->c, "C99 file to write: one function without heap and library calls");
   CLI::Option* name =
-      command->add_option("--name", flags->name, "begins the names in the C file; default: the task")
+      command
+          ->add_option("--name", flags->name, "prefix of the names in the C file; default: the task's name")
           ->needs(c);
-  command->add_flag("--int8", flags->int8, "weights of the C file in 8 bits")->needs(c);
-  CLI::Option* onnx = command->add_option("--onnx", flags->onnx,
-                                          "ONNX file to write: normaliser, network and clip in one graph");
+  command->add_flag("--int8", flags->int8, "store the weights of the C file in 8 bits")->needs(c);
+  CLI::Option* onnx = command->add_option(
+      "--onnx", flags->onnx, "ONNX file to write: normalisation, network and clipping in one graph");
   CLI::Option* safetensors =
       command->add_option("--safetensors", flags->safetensors, "safetensors file to write");
   command
-      ->add_option("--shield", flags->shield,
-                   "project: the C file holds actions to the guards of the policy's task, and --probe its "
-                   "actions; off")
+      ->add_option(
+          "--shield", flags->shield,
+          "project: the C file, and the actions of --probe, keep the guards of the policy's task; off")
       ->type_name("WORD")
       ->needs(c)
       ->excludes(onnx)
       ->excludes(safetensors);
-  command->add_option(
-      "--probe", flags->probe,
-      "JSON file to write: random observations and this policy's mean actions, to check others by");
-  command->add_option("--probes", flags->probes, "rows of --probe")->check(CLI::Range(1, 100000));
-  command->add_option("--seed", flags->seed, "of --probe");
+  command->add_option("--probe", flags->probe,
+                      "JSON file to write: random observations with the policy's mean actions, to check "
+                      "other implementations");
+  command->add_option("--probes", flags->probes, "number of observations in --probe")
+      ->check(CLI::Range(1, 100000));
+  command->add_option("--seed", flags->seed, "seed of the observations of --probe");
   command->callback([&run, flags, name] {
     flags->name_given = name->count() > 0;
     run = [flags] { return run_export(*flags); };

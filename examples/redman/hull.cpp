@@ -62,11 +62,11 @@ Report run_hull(const HullFlags& flags) {
 void add_hull(CLI::App& app, Run& run) {
   auto flags = std::make_shared<HullFlags>();
   CLI::App* command =
-      app.add_subcommand("hull", "The points of a mesh's convex hull, for --set object=hull --set hull=...");
-  command->add_option("file", flags->file, ".obj or .stl")->required();
-  command->add_option("--points", flags->points, "at most so many corners, the farthest out first")
+      app.add_subcommand("hull", "Compute the convex hull of a mesh for --set object=hull --set hull=...");
+  command->add_option("file", flags->file, "mesh file to read (.obj or .stl)")->required();
+  command->add_option("--points", flags->points, "largest number of corners; the outermost are kept")
       ->check(CLI::Range(4, kMostPoints));
-  command->add_option("--scale", flags->scale, "m per unit of the file")->check(above_zero());
+  command->add_option("--scale", flags->scale, "length of one unit of the file, m")->check(above_zero());
   command->callback([&run, flags] { run = [flags] { return run_hull(*flags); }; });
 }
 

@@ -172,10 +172,10 @@ void add_list(CLI::App& app, Run& run, const char* name, const char* help, Repor
   CLI::App* command = app.add_subcommand(name, help);
   if (list == list_tasks)
     command->add_flag("--presets", flags->presets,
-                      "print how many entries of each task's observation the presets of actor_obs leave");
-  command->add_option("name", flags->name, "show one of them with its options");
+                      "print how many entries of each task's observation every preset of actor_obs keeps");
+  command->add_option("name", flags->name, "show this one with its options");
   command->add_flag("--markdown", flags->markdown,
-                    "print the table of the manual pages; with a name, its page");
+                    "print the table of the manual's pages; with a name, the generated part of its page");
   command->callback([&run, flags, list] { run = [flags, list] { return list(*flags); }; });
 }
 
@@ -186,13 +186,13 @@ void add_tasks(CLI::App& app, Run& run) {
 }
 
 void add_algos(CLI::App& app, Run& run) {
-  add_list(app, run, "algos", "List the algorithms and their parameters", list_algos);
+  add_list(app, run, "algos", "List the algorithms and their options", list_algos);
 }
 
 void add_info(CLI::App& app, Run& run) {
   auto whose = std::make_shared<std::string>();
   CLI::App* command = app.add_subcommand("info", "Print versions and how the library was built");
-  command->add_option("options", *whose, "planner or shield: list its options instead")
+  command->add_option("options", *whose, "list the options of the planner or the shield instead")
       ->check(one_of({"planner", "shield"}));
   command->callback(
       [&run, whose] { run = [whose] { return whose->empty() ? show_info() : show_options(*whose); }; });

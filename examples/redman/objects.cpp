@@ -223,33 +223,35 @@ Report run_object(const ObjectFlags& flags) {
 
 void add_objects(CLI::App& app, Run& run) {
   auto flags = std::make_shared<ObjectsFlags>();
-  CLI::App* command = app.add_subcommand("objects", "List the objects that --set object=NAME takes");
-  command->add_flag("--markdown", flags->markdown, "print the table of the manual pages");
-  command->add_option("--sheet", flags->sheet, "PNG file: a picture of each, and of articulated ones");
-  command->add_option("--side", flags->side, "pixels of a picture's side")->check(CLI::Range(16, 1024));
-  command->add_option("--columns", flags->columns, "pictures in a row")->check(CLI::Range(1, 100));
+  CLI::App* command = app.add_subcommand("objects", "List the objects for --set object=NAME");
+  command->add_flag("--markdown", flags->markdown, "print the table of the manual's pages");
+  command->add_option("--sheet", flags->sheet,
+                      "PNG file to write: a picture of each object, articulated ones included");
+  command->add_option("--side", flags->side, "side of each picture, pixels")->check(CLI::Range(16, 1024));
+  command->add_option("--columns", flags->columns, "number of pictures in a row")->check(CLI::Range(1, 100));
   add_object_flag(*command);
   command->callback([&run, flags] { run = [flags] { return list_objects(*flags); }; });
 }
 
 void add_object(CLI::App& app, Run& run) {
   auto flags = std::make_shared<ObjectFlags>();
-  CLI::App* command =
-      app.add_subcommand("object", "Make an object of a mesh, or show one: its shapes, mass and moments");
-  command->add_option("file", flags->file, ".stl, .obj or .object file, or an object's name")->required();
+  CLI::App* command = app.add_subcommand(
+      "object", "Make an object from a mesh, or show one: its shapes, mass and moments of inertia");
+  command->add_option("file", flags->file, ".stl, .obj or .object file to read, or the name of an object")
+      ->required();
   std::vector<CLI::Option*> of_mesh = {
-      command->add_option("--parts", flags->parts, "at most so many convex parts; 1: one hull")
+      command->add_option("--parts", flags->parts, "largest number of convex parts; 1: one convex hull")
           ->check(CLI::Range(1, RDM_MAX_SHAPES)),
-      command->add_option("--points", flags->points, "at most so many corners of each")
+      command->add_option("--points", flags->points, "largest number of corners of each part")
           ->check(CLI::Range(4, 32)),
-      command->add_option("--mass", flags->mass, "kg")->check(above_zero()),
-      command->add_option("--friction", flags->friction, "coefficient of its surface")
+      command->add_option("--mass", flags->mass, "mass of the object, kg")->check(above_zero()),
+      command->add_option("--friction", flags->friction, "friction coefficient of its surface")
           ->check(CLI::Range(0.0, 10.0)),
       command->add_option("--material", flags->material, "name of its surface"),
-      command->add_option("--scale", flags->scale, "m per unit of the file")->check(above_zero()),
+      command->add_option("--scale", flags->scale, "length of one unit of the file, m")->check(above_zero()),
   };
-  command->add_option("--name", flags->name, "name of the object; default: the file's");
-  command->add_option("--out", flags->out, "write it as an .object file");
+  command->add_option("--name", flags->name, "name of the object; default: the file's name");
+  command->add_option("--out", flags->out, "write the object to this .object file");
   command->callback([&run, flags, of_mesh] {
     for (const CLI::Option* option : of_mesh) flags->given = flags->given || option->count() > 0;
     run = [flags] { return run_object(*flags); };

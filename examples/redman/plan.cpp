@@ -75,13 +75,14 @@ void add_plan(CLI::App& app, Run& run) {
   auto flags = std::make_shared<PlanFlags>();
   CLI::App* command =
       app.add_subcommand("plan", "Act by planning: simulate many action sequences, follow the best");
-  CLI::Option* task =
-      add_pool_flags(*command, flags->pool, "task, or its file (.task); default: the policy's");
+  CLI::Option* task = add_pool_flags(*command, flags->pool,
+                                     "task, by name or by its file (.task); default: the policy's task");
   command->add_option("--policy", flags->policy,
-                      "policy file, run folder or trained, that proposes; default: none");
+                      "policy that proposes plans: policy file, run folder or trained; default: none");
   command->add_option("--critic", flags->critic,
-                      "run folder whose critic values where a plan ends; default: none");
-  command->add_option("--episodes", flags->episodes, "episodes")->check(CLI::Range(1, kMostEpisodes));
+                      "run folder whose critic values the state at the end of a plan; default: none");
+  command->add_option("--episodes", flags->episodes, "number of episodes")
+      ->check(CLI::Range(1, kMostEpisodes));
   for (const rdm_option_spec& row : planner_options()) {
     const std::string key = row.key;
     if (key != "method" && key != "samples" && key != "horizon" && key != "iterations") continue;
@@ -91,14 +92,14 @@ void add_plan(CLI::App& app, Run& run) {
   }
   command
       ->add_option("--plan", flags->plans,
-                   "key=value of the planner, as `redman info planner` lists them; repeatable")
+                   "option of the planner (`redman info planner` lists them); repeatable")
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE");
   add_shield_flag(*command, flags->shield);
   add_cost_limit_flag(*command, flags->limits);
-  CLI::Option* record = command->add_option("--record", flags->record,
-                                            "all of every step, as `rollout --record`: .npz or .csv");
-  command->add_flag("--record-states", flags->states, "the worlds' state before each step too")
+  CLI::Option* record = command->add_option(
+      "--record", flags->record, "write every step to a file as `rollout --record` does: .npz or .csv");
+  command->add_flag("--record-states", flags->states, "also record the state of the worlds before each step")
       ->needs(record);
   add_set_flag(*command, flags->sets);
   command->callback([&run, flags, task] {

@@ -143,11 +143,11 @@ void add_plot(CLI::App& app, Run& run) {
   CLI::App* command = app.add_subcommand("plot", "Draw the learning curves of run folders as SVG");
   command
       ->add_option("folders", flags->folders,
-                   "run folders, or folders of them; seeds of one setting become a mean with a band, several "
-                   "tasks a row of panels each")
+                   "run folders, or folders that hold some; seeds are drawn as a mean with a band, each task "
+                   "as a row of panels")
       ->required();
-  const CLI::Option* out = command->add_option("--out", flags->out, "SVG file; default plot.svg");
-  command->add_flag("--each", flags->each, "a line for every folder");
+  const CLI::Option* out = command->add_option("--out", flags->out, "SVG file to write; default: plot.svg");
+  command->add_flag("--each", flags->each, "draw one line for every folder");
   command->callback([&run, flags, out] {
     flags->out_given = out->count() > 0;
     run = [flags] { return run_plot(*flags); };

@@ -174,34 +174,36 @@ void add_render(CLI::App& app, Run& run) {
   auto flags = std::make_shared<RenderFlags>();
   CLI::App* command =
       app.add_subcommand("render", "Draw an episode: a picture, a strip, a film, or a page in 3D");
-  CLI::Option* task =
-      add_task_flag(*command, flags->pool.task, "--task", "task, or its file; default: the policy's");
+  CLI::Option* task = add_task_flag(*command, flags->pool.task, "--task",
+                                    "task, by name or by its file (.task); default: the policy's task");
   command->add_option("--policy", flags->policy,
                       "policy file, run folder, .demo file, trained, plan, demo, zero, hold or random");
   command->add_option("--seed", flags->pool.seed, "seed of the episode");
   CLI::Option* step =
-      command->add_option("--step", flags->step, "control step to draw; 0: the start")->check(at_least(0));
-  command->add_option("--strip", flags->strip, "so many pictures of the episode side by side")
+      command->add_option("--step", flags->step, "control step to draw; 0: the start of the episode")
+          ->check(at_least(0));
+  command->add_option("--strip", flags->strip, "draw this many pictures of the episode side by side")
       ->check(CLI::Range(1, 64))
       ->excludes(step);
-  command->add_option("--from", flags->from, "first step of the strip, the film and the playback")
+  command->add_option("--from", flags->from, "first control step of the strip, the film and the page")
       ->check(at_least(0));
   command
       ->add_option("--to", flags->to,
-                   "last step of the strip, the film and the playback; default: the episode's end")
+                   "last control step of the strip, the film and the page; default: the end of the episode")
       ->check(at_least(0));
-  command->add_option("--size", flags->size, "pixels of one picture")->type_name("WxH");
-  command->add_option("--camera", flags->camera, "camera of the task");
-  command->add_flag(
-      "--cloud", flags->cloud,
-      "below each picture the points that the last decision saw, by the same camera, coloured by what "
-      "they lie on");
-  command->add_option("--out", flags->out, "PNG file; default render.png");
+  command->add_option("--size", flags->size, "width and height of one picture, pixels")->type_name("WxH");
+  command->add_option("--camera", flags->camera, "camera of the task, by name");
+  command->add_flag("--cloud", flags->cloud,
+                    "below each picture draw the point cloud of the last decision, by the same camera and "
+                    "coloured by class");
+  command->add_option("--out", flags->out, "PNG file to write; default: render.png");
   command->add_option("--video", flags->video,
-                      "film of the episode, .mp4 or .gif, made by the program ffmpeg");
-  command->add_option("--html", flags->html,
-                      "page with the episode in 3D, to rotate, play and scrub, above its reward and costs");
-  command->add_option("--glb", flags->glb, "the episode as binary glTF, an animation for 3D viewers");
+                      "film of the episode to write, .mp4 or .gif; needs the program ffmpeg");
+  command->add_option(
+      "--html", flags->html,
+      "HTML page to write: the episode in 3D, to play and rotate, above its reward and costs");
+  command->add_option("--glb", flags->glb,
+                      "binary glTF file to write: the episode as an animation for 3D viewers");
   add_shield_flag(*command, flags->shield);
   add_set_flag(*command, flags->sets);
   command->callback([&run, flags, task, step] {

@@ -210,20 +210,23 @@ Report run_report(const ReportFlags& flags) {
 void add_report(CLI::App& app, Run& run) {
   auto flags = std::make_shared<ReportFlags>();
   CLI::App* command = app.add_subcommand(
-      "report", "Compare run folders on a page: ranking, curves, configurations, pictures");
+      "report", "Compare run folders on one HTML page: ranking, curves, configurations, pictures");
   command
       ->add_option(
           "folders", flags->folders,
-          "run folders, or folders of them; runs that differ in the seed alone are one configuration")
+          "run folders, or folders that hold some; runs that differ only in the seed are one configuration")
       ->required();
-  const CLI::Option* html = command->add_option("--html", flags->html, "page to write; default report.html");
+  const CLI::Option* html =
+      command->add_option("--html", flags->html, "HTML page to write; default: report.html");
   command
       ->add_option("--episodes", flags->episodes,
-                   "fresh episodes that evaluate each run; 0: its training alone")
+                   "number of new episodes by which each run is evaluated; 0: use the training's figures")
       ->check(CLI::Range(0, kMostEpisodes));
-  command->add_option("--strip", flags->strip, "moments of an episode of each configuration; 0: no pictures")
+  command
+      ->add_option("--strip", flags->strip,
+                   "number of pictures of one episode of each configuration; 0: none")
       ->check(CLI::Range(0, 64));
-  command->add_option("--threads", flags->threads, "threads; 0: the caller's own");
+  command->add_option("--threads", flags->threads, "number of threads; 0: the calling thread alone");
   command->callback([&run, flags, html] {
     flags->html_given = html->count() > 0;
     run = [flags] { return run_report(*flags); };

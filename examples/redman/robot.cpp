@@ -120,8 +120,8 @@ Report show_robot(const RobotFlags& flags) {
 
 void add_robots(CLI::App& app, Run& run) {
   auto flags = std::make_shared<RobotsFlags>();
-  CLI::App* command = app.add_subcommand("robots", "List the robots that --set hand=NAME and arm=NAME take");
-  command->add_flag("--markdown", flags->markdown, "print the table of the manual pages");
+  CLI::App* command = app.add_subcommand("robots", "List the robots for --set hand=NAME and arm=NAME");
+  command->add_flag("--markdown", flags->markdown, "print the table of the manual's pages");
   add_robot_flag(*command);
   command->callback([&run, flags] { run = [flags] { return list_robots(*flags); }; });
 }
@@ -129,29 +129,31 @@ void add_robots(CLI::App& app, Run& run) {
 void add_robot(CLI::App& app, Run& run) {
   auto flags = std::make_shared<RobotFlags>();
   CLI::App* command = app.add_subcommand(
-      "robot", "Read a robot's file (URDF, MJCF, .robot), and list what is dropped, changed and guessed");
+      "robot", "Read the file of a robot (URDF, MJCF, .robot) and list what is dropped, changed and guessed");
   ImportFlags& f = flags->import;
-  command->add_option("file", flags->file, "file, or a robot's name")->required();
-  command->add_flag("--check", flags->check, "try it alone: what touches, shakes or does not get there");
-  command->add_option("--out", flags->out, "write it as a .robot file");
-  command->add_option("--format", f.format, "auto, urdf, mjcf or robot");
-  command->add_option("--name", f.name, "name of the robot; default: the file's");
-  command->add_option("--kind", f.kind, "hand, arm or other; default: guessed");
+  command->add_option("file", flags->file, "file to read, or the name of a robot")->required();
+  command->add_flag(
+      "--check", flags->check,
+      "simulate the robot alone and report joints that touch, do not settle or miss the ends of their range");
+  command->add_option("--out", flags->out, "write the robot to this .robot file");
+  command->add_option("--format", f.format, "format of the file: auto, urdf, mjcf or robot");
+  command->add_option("--name", f.name, "name of the robot; default: the name in the file");
+  command->add_option("--kind", f.kind, "kind of robot: hand, arm or other; default: guessed");
   command->add_flag("--skip-meshes", f.skip_meshes, "drop meshes that cannot be read");
   command->add_flag("--mend-inertia", f.mend_inertia,
                     "raise moments of inertia that break the triangle rule");
   command->add_option(
       "--density", f.density,
-      "kg/m3 of URDF links without inertial; default: they weigh nothing. Refused for other formats");
+      "density of URDF links without <inertial>, kg/m3; default: they weigh nothing; for URDF only");
   command->add_option("--slide-range", f.slide_range,
-                      "m to either side of a joint that slides without an end; default: 2 pi");
+                      "range to either side of a sliding joint without limits, m; default: 2 pi");
   command->add_option("--packages", f.packages,
-                      "folder of what package:// names; default: found above the file");
-  command->add_option("--root", f.root, "link (body) whose subtree is taken; world: all of an MJCF file");
-  command->add_option("--palm", f.palm, "link of the palm");
-  command->add_option("--tips", f.tips, "links or sites where fingers end: a,b,c");
-  command->add_option("--mount", f.mount, "link, site or \"x y z roll pitch yaw\" that comes onto an arm");
-  command->add_option("--flange", f.flange, "link or site that carries a hand; none");
+                      "folder that package:// refers to; default: searched above the file");
+  command->add_option("--root", f.root, "link (body) whose subtree is read; world: all of an MJCF file");
+  command->add_option("--palm", f.palm, "link that is the palm; default: guessed");
+  command->add_option("--tips", f.tips, "links or sites of the fingertips: a,b,c; default: guessed");
+  command->add_option("--mount", f.mount, "link, site or \"x y z roll pitch yaw\" that is mounted on an arm");
+  command->add_option("--flange", f.flange, "link or site that carries a hand; none: no hand");
   command->callback([&run, flags] { run = [flags] { return show_robot(*flags); }; });
 }
 

@@ -158,24 +158,27 @@ Report run_rollout(RolloutFlags flags) {
 
 void add_rollout(CLI::App& app, Run& run) {
   auto flags = std::make_shared<RolloutFlags>();
-  CLI::App* command = app.add_subcommand("rollout", "Play episodes and write what happened");
-  CLI::Option* task =
-      add_pool_flags(*command, flags->pool, "task, or its file (.task); default: the policy's");
+  CLI::App* command = app.add_subcommand("rollout", "Play episodes and write what happened in them");
+  CLI::Option* task = add_pool_flags(*command, flags->pool,
+                                     "task, by name or by its file (.task); default: the policy's task");
   command->add_option(
       "--policy", flags->policy,
       "policy file, run folder, .demo file, recorded .npz file, trained, plan, demo, zero, hold or random");
   CLI::Option* episodes =
-      command->add_option("--episodes", flags->episodes, "episodes; default: 1, or as recorded")
+      command
+          ->add_option("--episodes", flags->episodes, "number of episodes; default: 1, or all of a recording")
           ->check(CLI::Range(1, kMostEpisodes));
-  command->add_option("--out", flags->out, "CSV file: rewards, costs and what is observed of the object");
-  CLI::Option* record = command->add_option(
-      "--record", flags->record,
-      "all of every step: arrays of numpy (.npz), which --policy plays again, or named columns (.csv)");
-  command->add_flag("--record-states", flags->states, "the worlds' state before each step too")
+  command->add_option("--out", flags->out,
+                      "CSV file to write: rewards, costs and the object's observed fields of each step");
+  CLI::Option* record = command->add_option("--record", flags->record,
+                                            "file to write every step to: numpy arrays (.npz), which "
+                                            "--policy can play again, or named columns (.csv)");
+  command->add_flag("--record-states", flags->states, "also record the state of the worlds before each step")
       ->needs(record);
   command
-      ->add_option("--noise", flags->noise,
-                   "mean deviation of noise on the actions; a record keeps them without it too, as label")
+      ->add_option(
+          "--noise", flags->noise,
+          "mean standard deviation of the noise on the actions; a record also has them without it, as label")
       ->check(CLI::Range(0.0, 10.0));
   add_shield_flag(*command, flags->shield);
   add_set_flag(*command, flags->sets);

@@ -281,10 +281,9 @@ namespace {
 
 std::vector<CLI::Option*> add_teach_flags(CLI::App& command, RunSettings& run, std::string& start_share) {
   TeachSettings& t = run.teach;
-  command.add_option(
-      "--from", t.from,
-      "learn from this first: demo, a .demo or .npz file (clone it), trained, a policy file or run folder "
-      "(begin with it)");
+  command.add_option("--from", t.from,
+                     "what to learn from first: demo, or a .demo or .npz file, is cloned; trained, a policy "
+                     "file or a run folder is the start");
   std::vector<CLI::Option*> out;
   for (const TeachField& f : kTeachFields) {
     const std::string flag = std::string("--") + f.name;
@@ -292,13 +291,13 @@ std::vector<CLI::Option*> add_teach_flags(CLI::App& command, RunSettings& run, s
         f.whole ? command.add_option(flag, t.*f.whole, f.help) : command.add_option(flag, t.*f.real, f.help);
     out.push_back(o->check(CLI::Range(f.least, f.most)));
   }
-  out.push_back(command.add_flag("--success-only", t.success_only,
-                                 "leave out episodes of the teacher without success"));
+  out.push_back(
+      command.add_flag("--success-only", t.success_only, "leave out the teacher's episodes without success"));
   out.push_back(command.add_option(
       "--start-share", start_share,
-      "share of episodes that begin at a state of the recording: 0.7, or 0.7..0 over the run"));
-  out.push_back(
-      command.add_option("--save-recording", run.save_recording, "file (.npz) for what the teacher showed"));
+      "share of episodes that start from a recorded state: 0.7, or 0.7..0 to fall over the run"));
+  out.push_back(command.add_option("--save-recording", run.save_recording,
+                                   "file (.npz) to which the teacher's rows are written"));
   return out;
 }
 
@@ -312,40 +311,46 @@ void add_train(CLI::App& app, Run& run) {
   auto flags = std::make_shared<TrainFlags>();
   RunSettings& r = flags->run;
   r.pool.envs = 64;
-  CLI::App* command = app.add_subcommand("train", "Train a policy into a run folder, or continue a run");
+  CLI::App* command =
+      app.add_subcommand("train", "Train a policy and write it into a run folder, or continue a run");
   std::vector<CLI::Option*> others = {
-      add_task_flag(*command, r.pool.task, "--task,--env-id", "task, or its file (.task)"),
+      add_task_flag(*command, r.pool.task, "--task,--env-id", "task, by name or by its file (.task)"),
       command->add_option("--algo", r.agent.algo, "algorithm")};
-  CLI::Option* steps =
-      command->add_option("--steps,--total-steps", flags->steps, "control steps, all worlds together");
+  CLI::Option* steps = command->add_option("--steps,--total-steps", flags->steps,
+                                           "number of control steps, summed over all worlds");
   others.push_back(
       command->add_option("--out", flags->out, "run folder; default runs/<algo>-{<task>}/seed-<n>-<time>"));
   add_set_flag(*command, flags->sets);
   add_cost_limit_flag(*command, r.limits);
-  others.push_back(command->add_option("--envs,--num-envs", r.pool.envs, "worlds"));
-  CLI::Option* threads = command->add_option("--threads", r.pool.threads, "threads; 0: the caller's own");
-  others.push_back(command->add_option("--seed", r.pool.seed, "seed of worlds, weights and noise"));
+  others.push_back(
+      command->add_option("--envs,--num-envs", r.pool.envs, "number of worlds that are simulated together"));
+  CLI::Option* threads =
+      command->add_option("--threads", r.pool.threads, "number of threads; 0: the calling thread alone");
+  others.push_back(
+      command->add_option("--seed", r.pool.seed, "seed of the worlds, the initial weights and the noise"));
   others.push_back(add_shield_flag(*command, flags->shield));
-  command->add_option("--resume", flags->resume, "run folder to continue, from its last checkpoint");
-  others.push_back(command->add_option("--eval-every", r.eval_every, "epochs between evaluations")
+  command->add_option("--resume", flags->resume, "run folder to continue from its last checkpoint");
+  others.push_back(command->add_option("--eval-every", r.eval_every, "number of epochs between evaluations")
                        ->check(at_least(1))
                        ->group(kRunGroup));
-  others.push_back(command->add_option("--checkpoint-every", r.checkpoint_every, "epochs between checkpoints")
-                       ->check(at_least(1))
-                       ->group(kRunGroup));
+  others.push_back(
+      command->add_option("--checkpoint-every", r.checkpoint_every, "number of epochs between checkpoints")
+          ->check(at_least(1))
+          ->group(kRunGroup));
   command
-      ->add_option("--ranks", flags->ranks,
-                   "processes that learn together: N of this machine, or mpi under mpirun; sets blocks")
+      ->add_option(
+          "--ranks", flags->ranks,
+          "processes that learn as one: N on this machine, or mpi under mpirun; sets the option blocks")
       ->group(kRunGroup);
   others.push_back(command->get_option("--cost-limit"));
   others.push_back(command->get_option("--set"));
   others.push_back(command
                        ->add_flag(
                            "--no-tensorboard", [&r](int64_t) { r.events = false; },
-                           "no event file of the curve for TensorBoard")
+                           "do not write the learning curve for TensorBoard")
                        ->group(kRunGroup));
   others.push_back(
-      command->add_flag("--overwrite", flags->overwrite, "begin again in a folder that holds a run")
+      command->add_flag("--overwrite", flags->overwrite, "start again in a folder that already holds a run")
           ->group(kRunGroup));
   const std::vector<CLI::Option*> taught = add_teach_flags(*command, r, flags->start_share);
   others.push_back(command->get_option("--from"));

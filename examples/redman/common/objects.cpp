@@ -108,7 +108,7 @@ void add_object_flag(CLI::App& command) {
           [](const std::vector<std::string>& files) {
             for (const std::string& file : files) load_object(file);
           },
-          "an object's file (.object, by redman object), for --set object=NAME; repeatable")
+          "file of an object (.object, written by redman object) for --set object=NAME; repeatable")
       ->allow_extra_args(false)
       ->type_name("FILE")
       ->group(kOwnGroup);

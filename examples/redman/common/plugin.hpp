@@ -6,7 +6,7 @@
 namespace tool {
 
 inline constexpr const char* kPluginHelp =
-    "a library with tasks of its own: its redman_plugin() registers them; repeatable";
+    "shared library with additional tasks, which its function redman_plugin() registers; repeatable";
 
 // Takes `--plugin FILE` and `--plugin=FILE` out of the words, wherever they stand; Usage without a file.
 std::vector<std::string> take_plugins(std::vector<std::string>& words);

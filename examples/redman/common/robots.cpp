@@ -132,7 +132,7 @@ void add_robot_flag(CLI::App& command) {
           [](const std::vector<std::string>& files) {
             for (const std::string& file : files) load_robot(file);
           },
-          "a robot's file (.robot, URDF, MJCF), for --set hand=NAME, arm=NAME; repeatable")
+          "file of a robot (.robot, URDF, MJCF) for --set hand=NAME or arm=NAME; repeatable")
       ->allow_extra_args(false)
       ->type_name("FILE")
       ->group(kOwnGroup);

@@ -66,7 +66,7 @@ CLI::Option* add_task_flag(CLI::App& command, std::string& task, const char* nam
 }
 
 void add_envs_flag(CLI::App& command, PoolSettings& pool) {
-  command.add_option("--envs,--num-envs", pool.envs, "worlds")
+  command.add_option("--envs,--num-envs", pool.envs, "number of worlds that are simulated together")
       ->check(at_least(1))
       ->each([&pool](const std::string&) { pool.envs_given = true; });
 }
@@ -80,8 +80,8 @@ void say_worlds(const PoolSettings& pool, int32_t episodes) {
 CLI::Option* add_pool_flags(CLI::App& command, PoolSettings& pool, const char* task_help) {
   CLI::Option* task = add_task_flag(command, pool.task, "--task,--env-id", task_help);
   add_envs_flag(command, pool);
-  command.add_option("--threads", pool.threads, "threads; 0: the caller's own");
-  command.add_option("--seed", pool.seed, "seed");
+  command.add_option("--threads", pool.threads, "number of threads; 0: the calling thread alone");
+  command.add_option("--seed", pool.seed, "seed of the worlds");
   return task;
 }
 
@@ -131,16 +131,19 @@ PoolSettings counted(PoolSettings pool) {
 }
 
 void add_set_flag(CLI::App& command, std::vector<std::string>& sets) {
-  command.add_option("--set", sets, "key=value of the task or the algorithm; repeatable")
+  command
+      .add_option(
+          "--set", sets,
+          "option of the task or the algorithm (`redman tasks NAME`, `redman algos NAME`); repeatable")
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE");
 }
 
 void add_cost_limit_flag(CLI::App& command, std::vector<std::string>& limits) {
   command
-      .add_option(
-          "--cost-limit,--cost-lim", limits,
-          "limit on the sum of a cost over an episode: a number for column 0, name=number; repeatable")
+      .add_option("--cost-limit,--cost-lim", limits,
+                  "limit on the mean sum of a cost over an episode: LIMIT for column 0, NAME=LIMIT for "
+                  "another one; repeatable")
       ->allow_extra_args(false)
       ->type_name("[NAME=]LIMIT");
 }

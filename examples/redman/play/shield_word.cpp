@@ -48,12 +48,10 @@ ShieldWord read_shield_word(const std::string& word) {
 
 CLI::Option* add_shield_flag(CLI::App& command, std::string& word) {
   return command
-      .add_option(
-          "--shield", word,
-          "safety filter of every decision: off; project: the nearest action within the guards that the task "
-          "declares; predict[:key=value,...]: simulate it in a copy, and replace it where a cost would "
-          "follow "
-          "(`redman info shield` lists the keys)")
+      .add_option("--shield", word,
+                  "safety filter of every decision: off; project: replace it by the nearest action within "
+                  "the task's guards; predict[:key=value,...]: simulate it in a copy of the world, and "
+                  "replace it if a cost would follow (`redman info shield` lists the keys)")
       ->type_name("WORD");
 }
 
