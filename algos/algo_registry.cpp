@@ -30,7 +30,7 @@ const AlgoInfo& algo_at(int32_t index) {
 }
 
 int32_t algo_find(const char* name) {
-  if (!name) fail(Code::kArgument, "algo: NULL");
+  if (!name) fail(Code::kArgument, "algo is NULL");
   const char* names[std::size(kRows)];
   for (int32_t i = 0; i < algo_count(); ++i) {
     names[i] = kRows[i]->info.name;

@@ -5,7 +5,7 @@ namespace rdm::capi {
 HostHooks hooks_from(const rdm_host* host) {
   if (!host) return rdm::host();
   const rdm_host in = read_struct(host, sizeof(rdm_host), rdm_host{}, "host");
-  if (!in.alloc != !in.release) fail(Code::kArgument, "host: alloc and release come together or not at all");
+  if (!in.alloc != !in.release) fail(Code::kArgument, "host: set both alloc and release, or neither");
   HostHooks out;
   out.user = in.user;
   out.alloc = in.alloc;
@@ -72,7 +72,7 @@ void give_settings(const Options& options, char* text, size_t capacity, size_t* 
   need(size, "size");
   const size_t length = options.print_lines(nullptr, 0);
   if (text && capacity <= length)
-    fail(Code::kRange, "capacity: %zu bytes, %zu are needed", capacity, length + 1);
+    fail(Code::kRange, "capacity: %zu bytes are too few, %zu are needed", capacity, length + 1);
   if (text) options.print_lines(text, capacity);
   *size = length;
 }
@@ -83,7 +83,7 @@ void give_option(const Options& options, int32_t i, const char** key, char* text
   need_index(i, options.count(), "i");
   char value[RDM_TEXT_SIZE];
   if (!options.print(i, value))
-    fail(Code::kRange, "option %s: its text is longer than %d bytes; %s has it whole", options.key(i),
+    fail(Code::kRange, "option %s: its text is longer than %d bytes; %s gives all of it", options.key(i),
          RDM_TEXT_SIZE - 1, settings_call);
   *key = options.key(i);
   std::strcpy(text, value);

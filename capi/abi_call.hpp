@@ -41,7 +41,7 @@ rdm_result call_with(const Config* c, F&& f) noexcept {
 template <class Config>
 void check_error(const Config& c) {
   if (c.error && c.error_size < 1)
-    fail(Code::kRange, "config.error_size: %d is less than 1, but error is set", c.error_size);
+    fail(Code::kRange, "config.error_size: %d is less than 1, but error is not NULL", c.error_size);
 }
 
 // For functions that a host calls within its own ones: the library's floating-point mode is set already, and
@@ -78,7 +78,7 @@ inline void need(const void* p, const char* name) {
 template <class T>
 void need_room(const T* out, size_t capacity, const char* name) {
   if (capacity > SIZE_MAX / 2 / sizeof(T))
-    fail(Code::kRange, "capacity: %zu is more than memory has", capacity);
+    fail(Code::kRange, "capacity: %zu is more than the memory can hold", capacity);
   if (capacity > 0) need(out, name);
 }
 template <class Handle>
@@ -90,8 +90,9 @@ void need_handle(const Handle* h) {
   const char* name = name_of(Handle::kTag);
   need(h, name);
   if (h->tag == Handle::kTag) return;
-  if (const char* other = name_of(h->tag)) fail(Code::kArgument, "%s: the handle is of kind %s", name, other);
-  fail(Code::kArgument, "%s: no handle of this kind, or one that was destroyed", name);
+  if (const char* other = name_of(h->tag))
+    fail(Code::kArgument, "%s: it is a handle of another kind, %s", name, other);
+  fail(Code::kArgument, "%s: it is not a handle of this kind, or it was destroyed", name);
 }
 // Before the memory goes: whoever comes with the handle once more is told.
 template <class Handle>
@@ -107,7 +108,8 @@ inline void need_index(int64_t i, int64_t count, const char* name) {
 inline void check_size(size_t size, size_t first_size, const char* name, const char* member) {
   if (size < first_size) fail(Code::kArgument, "%s%s: %zu is less than %zu", name, member, size, first_size);
   if (size > kMaxStructSize)
-    fail(Code::kArgument, "%s%s: %zu is more than %zu: was it set?", name, member, size, kMaxStructSize);
+    fail(Code::kArgument, "%s%s: %zu is more than %zu; was it set at all?", name, member, size,
+         kMaxStructSize);
 }
 
 // A reserved member may mean something in a later version: whoever sets it must not be misread by this one.
@@ -172,7 +174,7 @@ void init_struct(T* out, size_t size, size_t first_size, T value, const char* na
 inline constexpr size_t kScratchSlack = Arena::kAlign - 1;
 inline void* aligned_scratch(void* scratch, size_t size, size_t bytes) {
   if (size < bytes + kScratchSlack)
-    fail(Code::kRange, "scratch_bytes: %zu, %zu are needed", size, bytes + kScratchSlack);
+    fail(Code::kRange, "scratch_bytes: %zu are too few, %zu are needed", size, bytes + kScratchSlack);
   const auto at = reinterpret_cast<uintptr_t>(scratch);
   return static_cast<unsigned char*>(scratch) + (Arena::kAlign - at % Arena::kAlign) % Arena::kAlign;
 }
@@ -208,7 +210,7 @@ void emit(void* bytes, size_t capacity, size_t* size, F&& write) {
   write(count);
   if (bytes) {
     if (capacity < count.size())
-      fail(Code::kRange, "capacity: %zu bytes, %zu are needed", capacity, count.size());
+      fail(Code::kRange, "capacity: %zu bytes are too few, %zu are needed", capacity, count.size());
     Writer out(bytes, capacity);
     write(out);
   }

@@ -40,10 +40,10 @@ ActorConfig read_config(const rdm_actor_config* c) {
 
 PointRows read_clouds(const rdm_points* points, const PointNetShape& eyes) {
   if (!eyes.points) {
-    if (points) fail(Code::kState, "policy: it reads no points");
+    if (points) fail(Code::kState, "policy: it does not read points");
     return {};
   }
-  if (!points) fail(Code::kState, "points: NULL, but the policy reads clouds of %d points", eyes.points);
+  if (!points) fail(Code::kState, "points is NULL, but the policy reads clouds of %d points", eyes.points);
   const PointRows clouds = read_points(points, eyes);
   need_channels(eyes, clouds, 0);  // that they are there
   return clouds;

@@ -202,7 +202,8 @@ rdm_result rdm_agent_act_points(rdm_agent* a, const float* obs, const rdm_points
                                 float* action) {
   return call_on(a, [&] {
     const bool sample = read_act(obs, mode, action);
-    if (!a->agent->eyes().points) fail(Code::kState, "points: the agent has no encoder");
+    if (!a->agent->eyes().points)
+      fail(Code::kState, "points: the agent has no encoder, so it cannot read them");
     a->agent->act(obs, sample, action, read_points(points, a->agent->eyes()));
   });
 }
@@ -215,7 +216,8 @@ rdm_result rdm_agent_pretrain(rdm_agent* a, const rdm_points* points, const uint
     if (io) check_out(io, sizeof(rdm_pretrain_report), "io");
     if (rows < 1 || rows > kMaxPretrainRows)
       fail(Code::kRange, "rows: %d is outside [1, %d]", rows, kMaxPretrainRows);
-    if (!a->agent->eyes().points) fail(Code::kState, "pretrain: the agent has no encoder");
+    if (!a->agent->eyes().points)
+      fail(Code::kState, "pretrain: the agent has no encoder; set option encoder");
     PretrainOptions o;
     o.num_labels = in.num_labels;
     o.epochs = in.epochs;
@@ -383,7 +385,7 @@ TensorInfo find_tensor(Agent& agent, const char* name, size_t count) {
   for (int32_t i = 0; agent.tensor(i, &t); ++i) {
     if (std::strcmp(t.name, name) == 0) {
       const size_t size = static_cast<size_t>(t.rows) * static_cast<size_t>(t.cols);
-      if (count != size) fail(Code::kRange, "count: %s has %zu values, not %zu", name, size, count);
+      if (count != size) fail(Code::kRange, "count: tensor %s has %zu values, not %zu", name, size, count);
       return t;
     }
     names.push_back(t.name);

@@ -58,7 +58,7 @@ rdm_result rdm_pool_get_hull(const rdm_pool* p, int32_t i, float* points, size_t
     const Scene& scene = p->pool->task().scene();
     need_index(i, static_cast<int64_t>(scene.shapes.size()), "i");
     const Hull* hull = scene.hull_of(scene.shapes[static_cast<size_t>(i)]);
-    if (!hull) fail(Code::kArgument, "i: shape %d is no hull", i);
+    if (!hull) fail(Code::kArgument, "i: shape %d is not a hull", i);
     need_room(points, capacity, "points");
     *count = static_cast<size_t>(hull->num_points);
     for (size_t k = 0; k < std::min(capacity, *count); ++k) to_floats(hull->points[k], points + 3 * k);
@@ -135,7 +135,8 @@ rdm_result rdm_pool_raycast(const rdm_pool* p, int32_t env, const double origin[
     need(direction, "direction");
     check_out(io, sizeof(rdm_ray_hit), "io");
     const Vec3 from{origin[0], origin[1], origin[2]}, along{direction[0], direction[1], direction[2]};
-    if (!bounded(from)) fail(Code::kArgument, "origin: it is not finite, or beyond %g", kStateBound);
+    if (!bounded(from))
+      fail(Code::kArgument, "origin: it is not finite, or its magnitude is above %g", kStateBound);
     const double length = norm(along);
     if (!(length > 0 && std::isfinite(length)))
       fail(Code::kArgument, "direction: its length is 0 or not finite");

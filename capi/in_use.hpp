@@ -55,7 +55,8 @@ class Use {
     if (h->in_use.enter(kChanges<Handle>)) return;
     note_failure(true);  // whoever called back says why
     fail(Code::kState,
-         "%s: a call on it has not returned yet, of another thread, or the one that this callback runs in",
+         "%s is in use by a call that has not returned yet: one of another thread, or the one whose callback "
+         "this is",
          name_of(Handle::kTag));
   }
 
@@ -105,7 +106,7 @@ class Changes {
 
  private:
   static void check(bool good, const char* name) {
-    if (!good) fail(Code::kState, "%s: another call changes it meanwhile", name);
+    if (!good) fail(Code::kState, "%s is being changed by another call", name);
   }
   std::atomic<uint32_t> count_ = 0;  // odd within a change
 };

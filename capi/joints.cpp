@@ -17,7 +17,7 @@ int32_t joints_of(const rdm_pool* p, int32_t env, size_t count) {
   need_index(env, p->pool->config().num_envs, "env");
   const int32_t joints = p->pool->task().scene().num_links;
   if (count != static_cast<size_t>(joints))
-    fail(Code::kRange, "count: %zu, the pool has %d joints", count, joints);
+    fail(Code::kRange, "count: it is %zu, but the pool has %d joints", count, joints);
   return joints;
 }
 

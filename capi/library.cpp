@@ -39,7 +39,7 @@ rdm_result rdm_nearest_names(const char* name, const char* names, char* text, si
     need(name, "name");
     need(names, "names");
     need(text, "text");
-    if (capacity == 0) fail(Code::kArgument, "capacity: 0 bytes hold no text");
+    if (capacity == 0) fail(Code::kArgument, "capacity: 0 bytes cannot hold a text");
     Vector<char> lines(names, names + std::strlen(names) + 1);
     Vector<const char*> rows;
     for (char* at = lines.data(); *at && rows.size() < static_cast<size_t>(Nearest::kMostLookedAt);) {
@@ -57,7 +57,7 @@ rdm_result rdm_fail(rdm_result code, const char* text) {
     if ((code > static_cast<rdm_result>(RDM_ERROR_ARGUMENT) ||
          code < static_cast<rdm_result>(RDM_ERROR_CANCELLED)) &&
         code != static_cast<rdm_result>(RDM_ERROR_INTERNAL))
-      fail(Code::kRange, "code: %d is no error; the text was: %s", code, text);
+      fail(Code::kRange, "code: %d is not the code of an error; the text was: %s", code, text);
     fail(static_cast<Code>(code), "%s", text);
   });
 }
@@ -67,7 +67,7 @@ rdm_result rdm_rotation(const double axis[3], double angle, double q[4]) {
     need(axis, "axis");
     need(q, "q");
     const Vec3 a{axis[0], axis[1], axis[2]};
-    if (!finite(a) || !(std::fabs(norm(a) - 1) < 1e-4)) fail(Code::kArgument, "axis is no unit vector");
+    if (!finite(a) || !(std::fabs(norm(a) - 1) < 1e-4)) fail(Code::kArgument, "axis is not a unit vector");
     if (!std::isfinite(angle)) fail(Code::kArgument, "angle is not finite");
     const Quat turn = axis_angle(a, angle);
     q[0] = turn.x, q[1] = turn.y, q[2] = turn.z, q[3] = turn.w;
@@ -87,17 +87,18 @@ uint32_t rdm_features(void) {
 
 rdm_result rdm_check_abi(uint32_t abi, uint32_t version) {
   return call([&] {
-    if (abi != RDM_ABI) fail(Code::kVersion, "abi: the header has %u, the library %d", abi, RDM_ABI);
+    if (abi != RDM_ABI) fail(Code::kVersion, "abi: the header has %u, but the library has %d", abi, RDM_ABI);
     if (version > RDM_VERSION)
-      fail(Code::kVersion, "version: the header has %u, the library %d", version, RDM_VERSION);
+      fail(Code::kVersion, "version: the header has %u, but the library has %d", version, RDM_VERSION);
   });
 }
 
 rdm_result rdm_check_experimental(uint32_t version) {
   return call([&] {
     if (version / 1000 != RDM_VERSION / 1000)
-      fail(Code::kVersion, "version: the header has %u, the library %d: experimental functions differ",
-           version, RDM_VERSION);
+      fail(Code::kVersion,
+           "version: the header has %u, but the library has %d, and experimental functions differ", version,
+           RDM_VERSION);
   });
 }
 
@@ -137,7 +138,7 @@ rdm_result rdm_init(const rdm_host* host) {
     const std::lock_guard lock(g_init_mutex);
     const HostHooks hooks = host ? hooks_from(host) : HostHooks{};
     if (g_init_count > 0 && host)
-      fail(Code::kState, "rdm_init: called before, %s hooks; shut down first",
+      fail(Code::kState, "rdm_init: it was called before, %s hooks; call rdm_shutdown first",
            g_init_hooks ? "with" : "without");
     if (g_init_count == 0) {
       set_host(hooks);

@@ -50,7 +50,7 @@ void to_floats(const Vec3& v, float out[3]) {
 
 void need_points(const float* points, size_t count, const char* name) {
   if (count > 0) need(points, name);
-  if (count > SIZE_MAX / 16) fail(Code::kRange, "count: %zu is too many", count);
+  if (count > SIZE_MAX / 16) fail(Code::kRange, "count: %zu is too large", count);
 }
 
 MapFormat format_of(const char* path) {
@@ -137,7 +137,7 @@ rdm_result rdm_map_scan(rdm_map* m, rdm_pool* p, int32_t env, const char* camera
   return call_on(m, [&] {
     const Use use(p);
     need_index(env, p->pool->config().num_envs, "env");
-    if (num_skip > SIZE_MAX / 16) fail(Code::kRange, "num_skip: %zu is too many", num_skip);
+    if (num_skip > SIZE_MAX / 16) fail(Code::kRange, "num_skip: %zu is too large", num_skip);
     if (num_skip > 0) need(skip, "skip");
     const HostScope scope(m->hooks);
     const Camera eye = pool_camera(p, env, camera);
@@ -250,7 +250,7 @@ rdm_result rdm_map_write(const rdm_map* m, int32_t format, void* bytes, size_t c
     Vector<unsigned char> file;
     m->map->write(format == RDM_MAP_BINARY ? MapFormat::kBinary : MapFormat::kFull, file);
     if (bytes && capacity < file.size())
-      fail(Code::kRange, "capacity: %zu bytes, %zu are needed", capacity, file.size());
+      fail(Code::kRange, "capacity: %zu bytes are too few, %zu are needed", capacity, file.size());
     if (bytes) std::copy(file.begin(), file.end(), static_cast<unsigned char*>(bytes));
     *size = file.size();
   });

@@ -55,17 +55,17 @@ void need_name(const char* name, const char* what, size_t longest) {
   if (!name) fail(Code::kArgument, "%s is NULL", what);
   const size_t length = std::strlen(name);
   if (length < 1 || length > longest)
-    fail(Code::kRange, "%s: %s has not 1 to %zu characters", what, Quoted(name).text, longest);
+    fail(Code::kRange, "%s: %s must have 1 to %zu characters", what, Quoted(name).text, longest);
   for (const char* at = name; *at; ++at)
     if (!((*at >= 'a' && *at <= 'z') || (*at >= 'A' && *at <= 'Z') || (*at >= '0' && *at <= '9') ||
           std::strchr("_-.", *at)))
-      fail(Code::kArgument, "%s: %s has other characters than letters, digits, '_', '-', '.'", what,
+      fail(Code::kArgument, "%s: %s may contain only letters, digits, '_', '-' and '.'", what,
            Quoted(name).text);
 }
 
 void need_text(const char* text, const char* what) {
   if (!text) fail(Code::kArgument, "%s is NULL", what);
-  if (!is_clean_text(text)) fail(Code::kArgument, "%s: control characters, or not UTF-8", what);
+  if (!is_clean_text(text)) fail(Code::kArgument, "%s: it has control characters, or is not UTF-8", what);
 }
 
 struct RowName {  // "def.costs[2]" and a member
@@ -98,8 +98,8 @@ struct Nested {
   explicit Nested(const char* task) {
     if (t_nested >= kMostNested)
       fail(Code::kState,
-           "task %s: build: %d builds deep: a build made a pool whose build made a pool, and so on", task,
-           kMostNested);
+           "task %s: build: %d builds are nested: a build made a pool whose build made a pool, and so on",
+           task, kMostNested);
     ++t_nested;
   }
   ~Nested() { --t_nested; }
@@ -128,7 +128,7 @@ class BuiltTask final : public Task {
       return r != RDM_OK ? r : call_inside([&] { complete_scene(&scene_); });
     });
     if (field_total(scene_.fields) > kMostEntries)
-      fail(Code::kRange, "task %s: the fields have %d entries, at most %d", own.def.name,
+      fail(Code::kRange, "task %s: its fields have %d entries, but at most %d are allowed", own.def.name,
            field_total(scene_.fields), kMostEntries);
     scene_.options = nullptr;
     make_chunk();
@@ -267,8 +267,8 @@ Verdict BuiltTask::verdict_of(const rdm_verdict& out) const {
   v.reward = out.reward;
   for (int32_t k = 0; k < d.num_costs; ++k) {
     if (out.cost[k] < 0)
-      fail(Code::kRange, "task %s: judge: cost %s is %g, less than 0", d.name, own_.info().costs[k].name,
-           out.cost[k]);
+      fail(Code::kRange, "task %s: judge: cost %s is %g, but it must be 0 or more", d.name,
+           own_.info().costs[k].name, out.cost[k]);
     v.cost[k] = out.cost[k];
     v.cost_raw[k] = out.cost_raw[k];
   }
@@ -489,12 +489,13 @@ void OwnTask::take_fields() {
       fail(Code::kRange, "def.fields[%d]: low %g of %s is not below high %g", i, static_cast<double>(f.low),
            f.name, static_cast<double>(f.high));
     for (const FieldSpec& other : fields)
-      if (other.name == f.name) fail(Code::kArgument, "def.fields[%d].name: %s is there twice", i, f.name);
+      if (other.name == f.name) fail(Code::kArgument, "def.fields[%d].name: %s occurs twice", i, f.name);
     fields.push_back({Name(f.name), texts_.keep(f.unit), f.count, bounded ? f.low : kUnbounded,
                       bounded ? f.high : kUnbounded});
   }
   if (total > kMostEntries)
-    fail(Code::kRange, "def.fields: %lld entries, at most %d", static_cast<long long>(total), kMostEntries);
+    fail(Code::kRange, "def.fields: they have %lld entries, but at most %d are allowed",
+         static_cast<long long>(total), kMostEntries);
 }
 
 void OwnTask::take_costs() {
@@ -506,7 +507,7 @@ void OwnTask::take_costs() {
     if (!std::isfinite(c.limit)) fail(Code::kArgument, "def.costs[%d].limit of %s is not finite", i, c.name);
     for (const CostSpec& other : costs_)
       if (same_name(other.name, c.name))
-        fail(Code::kArgument, "def.costs[%d].name: %s is there twice", i, c.name);
+        fail(Code::kArgument, "def.costs[%d].name: %s occurs twice", i, c.name);
     costs_.push_back({texts_.keep(c.name), texts_.keep(c.help ? c.help : ""), c.limit});
   }
 }
@@ -527,11 +528,12 @@ void OwnTask::take_options() {
     for (OptionSpec& r : tail)
       if (same_name(r.key, o.key)) row = &r;
     if (row && row->kind != kind)
-      fail(Code::kArgument, "def.options[%d].kind: %s, which every task has, is an %s", i, row->key,
+      fail(Code::kArgument, "def.options[%d].kind: %s is an option of every task and of kind %s", i, row->key,
            kind_name(row->kind));
     for (const OptionSpec& other : options_)
-      if (same_name(other.key, o.key)) fail(Code::kArgument, "%s: %s is there twice", key.text, o.key);
-    if (same_name(o.key, "max_steps")) fail(Code::kArgument, "%s: max_steps is def.max_steps", key.text);
+      if (same_name(other.key, o.key)) fail(Code::kArgument, "%s: %s occurs twice", key.text, o.key);
+    if (same_name(o.key, "max_steps"))
+      fail(Code::kArgument, "%s: max_steps is not an option; set def.max_steps", key.text);
     OptionSpec made = basic(number_option("", 0, 0, 0, ""));
     if (row) {
       made = *row;
@@ -539,7 +541,8 @@ void OwnTask::take_options() {
       need_text(o.help, RowName("options", i, "help").text);
       const bool ranged = o.choices && kind != OptionKind::kText;
       if (ranged && (std::strcmp(o.choices, "a..b") != 0 || kind == OptionKind::kFlag))
-        fail(Code::kArgument, "def.options[%d].choices of %s: a number or integer has a..b or NULL", i,
+        fail(Code::kArgument,
+             "def.options[%d].choices of %s: for a number or an integer it must be \"a..b\" or NULL", i,
              o.key);
       if (o.choices) need_text(o.choices, RowName("options", i, "choices").text);
       made.key = texts_.keep(o.key);
@@ -563,7 +566,7 @@ void OwnTask::take_options() {
       if (std::strlen(o.text) > static_cast<size_t>(made.longest))
         fail(Code::kRange, "def.options[%d].text of %s is longer than %d", i, o.key, made.longest);
       if (made.choices && !among(o.text, made.choices))
-        fail(Code::kRange, "def.options[%d].text: %s of %s is none of %s", i, Quoted(o.text).text, o.key,
+        fail(Code::kRange, "def.options[%d].text: %s of %s is not one of %s", i, Quoted(o.text).text, o.key,
              made.choices);
       made.text = texts_.keep(o.text);
     } else {
@@ -571,7 +574,7 @@ void OwnTask::take_options() {
       made.text = nullptr;
       if (!(o.number >= made.low && o.number <= made.high) ||
           (kind != OptionKind::kNumber && o.number != std::floor(o.number)))
-        fail(Code::kRange, "def.options[%d].number: %s of %s is outside [%s, %s], or no integer", i,
+        fail(Code::kRange, "def.options[%d].number: %s of %s is outside [%s, %s], or not an integer", i,
              Number(o.number).text, o.key, Number(made.low).text, Number(made.high).text);
     }
     if (row)
@@ -601,7 +604,7 @@ void OwnTask::take_cameras() {
       up[k] = static_cast<double>(c.up[k]);
     }
     if (!finite(spec.eye) || !finite(spec.target) || !(norm(spec.eye - spec.target) > 0))
-      fail(Code::kArgument, "def.cameras[%d]: %s does not look from one place to another", i, c.name);
+      fail(Code::kArgument, "def.cameras[%d]: eye and target of %s are the same, or not finite", i, c.name);
     if (!(spec.fov_y > 0.01 && spec.fov_y < 3))
       fail(Code::kRange, "def.cameras[%d].fov_y: %g of %s is outside [0.01, 3]", i, spec.fov_y, c.name);
     if (!finite(up)) fail(Code::kArgument, "def.cameras[%d].up of %s is not finite", i, c.name);
@@ -614,7 +617,7 @@ void OwnTask::take_cameras() {
     spec.mount = c.mount;  // a pool checks it, whose scene is built
     for (const CameraSpec& other : cameras_)
       if (same_name(other.name, c.name))
-        fail(Code::kArgument, "def.cameras[%d].name: %s is there twice", i, c.name);
+        fail(Code::kArgument, "def.cameras[%d].name: %s occurs twice", i, c.name);
     spec.name = texts_.keep(c.name);
     cameras_.push_back(spec);
   }
@@ -677,11 +680,11 @@ void OwnTask::end() noexcept {
 }
 
 void OwnTask::blame(const char* function, rdm_result r, bool thrown) const {
-  if (thrown) fail(Code::kArgument, "task %s: %s: an exception came out of it", def.name, function);
+  if (thrown) fail(Code::kArgument, "task %s: %s threw an exception", def.name, function);
   // a host may return any code that has a meaning here, and nothing else
   if (r > 0 ||
       (r < static_cast<rdm_result>(RDM_ERROR_CANCELLED) && r != static_cast<rdm_result>(RDM_ERROR_INTERNAL)))
-    fail(Code::kArgument, "task %s: %s: it returned %d, which is no rdm_result", def.name, function, r);
+    fail(Code::kArgument, "task %s: %s returned %d, which is not an rdm_result", def.name, function, r);
   char text[kErrorTextSize];
   copy_text(text, sizeof text, failure_noted() ? last_error() : code_string(r));
   fail(static_cast<Code>(r), "task %s: %s: %s", def.name, function, text);

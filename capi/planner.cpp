@@ -74,9 +74,9 @@ void use_critic(const rdm_agent* agent, const Pool& pool, rdm_planner* p, Planne
   const Use use(agent);
   const AgentConfig& a = agent->agent->config();
   if (a.obs_dim != pool.obs_dim())
-    fail(Code::kArgument, "obs_dim: the agent has %d, the pool %d", a.obs_dim, pool.obs_dim());
+    fail(Code::kArgument, "obs_dim: the agent has %d, but the pool has %d", a.obs_dim, pool.obs_dim());
   if (a.cost_dim != pool.cost_dim())
-    fail(Code::kArgument, "cost_dim: the agent has %d, the pool %d", a.cost_dim, pool.cost_dim());
+    fail(Code::kArgument, "cost_dim: the agent has %d, but the pool has %d", a.cost_dim, pool.cost_dim());
   agent->agent->values(nullptr, 0, nullptr, nullptr);  // refuses critics without a unit
   p->critics.open(agent->agent);
   p->agent = agent;

@@ -192,7 +192,8 @@ rdm_result rdm_policy_read_in(rdm_policy** out, const void* bytes, size_t size, 
     need(bytes, "bytes");
     need(memory, "memory");
     const size_t needed = memory_of(bytes, size);
-    if (capacity < needed) fail(Code::kRange, "capacity: %zu bytes, %zu are needed", capacity, needed);
+    if (capacity < needed)
+      fail(Code::kRange, "capacity: %zu bytes are too few, %zu are needed", capacity, needed);
     Given given{static_cast<unsigned char*>(memory), capacity};
     HostHooks hooks;
     hooks.user = &given, hooks.alloc = cut_given, hooks.release = keep_given;
@@ -251,8 +252,7 @@ void need_rows(int32_t rows) {
 }
 // Of one that sees no points.
 void need_blind(const Policy& policy) {
-  if (policy.view().eyes.points)
-    fail(Code::kState, "policy: it reads points, which rdm_policy_act_points takes");
+  if (policy.view().eyes.points) fail(Code::kState, "policy: it reads points; call rdm_policy_act_points");
 }
 
 // run(scratch) writes the rows that are not NULL, action and mean, which are looked at then.
@@ -292,7 +292,8 @@ rdm_result rdm_policy_sample(const rdm_policy* p, const float* obs, int32_t rows
     need(obs, "obs");
     need_rows(rows);
     need_blind(*p->policy);
-    if (!action && !mean) fail(Code::kArgument, "action and mean are NULL: there is nothing to write");
+    if (!action && !mean)
+      fail(Code::kArgument, "action and mean are both NULL, so there is nothing to write");
     act(p, obs, rows, noise, action, mean, scratch, scratch_bytes,
         [&](void* memory) { p->policy->sample(obs, rows, noise, action, mean, memory); });
   });
@@ -308,8 +309,8 @@ rdm_result rdm_policy_novelty(const rdm_policy* p, const float* obs, int32_t row
     const PolicyView& v = p->policy->view();
     if (!(v.usual.rms > 0))
       fail(Code::kUnsupported,
-           "novelty: the policy does not tell which rows are usual; an agent with normalize_obs writes it, "
-           "once it has learned from 1000 rows");
+           "novelty: the policy file has no statistics of usual rows; an agent with normalize_obs writes "
+           "them after it has learned from 1000 rows");
     need_finite(obs, rows, v.obs_dim(), "obs");
     p->policy->novelty(obs, rows, novelty);
     p->changes.end_reading(begun, "policy");
@@ -324,7 +325,7 @@ rdm_result rdm_policy_act_points(const rdm_policy* p, const float* obs, const rd
     need(obs, "obs");
     need_rows(rows);
     const PointNetShape& eyes = p->policy->view().eyes;
-    if (!eyes.points) fail(Code::kState, "policy: it reads no points");
+    if (!eyes.points) fail(Code::kState, "policy: it does not read points");
     const PointRows clouds = read_points(points, eyes);
     need_finite(clouds.metres, rows, 3 * eyes.points, "points");
     need_channels(eyes, clouds, static_cast<size_t>(rows));
@@ -354,7 +355,7 @@ rdm_result rdm_policy_get_tensor(const rdm_policy* p, const char* name, float* o
     for (int32_t i = 0; tensor_at(p->policy->view(), i, &t); ++i) {
       if (std::strcmp(t.name, name) == 0) {
         const size_t size = static_cast<size_t>(t.rows) * static_cast<size_t>(t.cols);
-        if (count != size) fail(Code::kRange, "count: %s has %zu values, not %zu", name, size, count);
+        if (count != size) fail(Code::kRange, "count: tensor %s has %zu values, not %zu", name, size, count);
         copy_tensor(p->policy->view(), t, out);
         return;
       }
@@ -392,7 +393,7 @@ PointRows rdm::capi::read_points(const rdm_points* points, const PointNetShape& 
   const auto in = read_struct(points, kFirstPointsSize, rdm_points{}, "points");
   need(in.points, "points.points");
   if (in.num_points != eyes.points)
-    fail(Code::kRange, "points.num_points: %d, the encoder reads %d", in.num_points, eyes.points);
+    fail(Code::kRange, "points.num_points: it is %d, but the encoder reads %d", in.num_points, eyes.points);
   PointRows clouds;
   clouds.metres = in.points;
   clouds.classes = eyes.classes ? in.point_class : nullptr;
@@ -437,17 +438,18 @@ FieldDifference difference_of(const PolicyView& v, const rdm_spec& s) {
 void rdm::capi::check_policy(const PolicyView& v, const rdm_spec& s) {
   const char *origin = v.task[0] ? "; the policy learned in task " : "", *task = v.task;
   if (v.obs_dim() != s.obs_dim)
-    fail(Code::kVersion, "obs_dim: the policy has %d, the task %d%s%s%s", v.obs_dim(), s.obs_dim,
+    fail(Code::kVersion, "obs_dim: the policy has %d, but the task has %d%s%s%s", v.obs_dim(), s.obs_dim,
          difference_of(v, s).text, origin, task);
   if (v.action_dim() != s.action_dim)
-    fail(Code::kVersion, "action_dim: the policy has %d, the task %d%s%s", v.action_dim(), s.action_dim,
-         origin, task);
+    fail(Code::kVersion, "action_dim: the policy has %d, but the task has %d%s%s", v.action_dim(),
+         s.action_dim, origin, task);
   if (v.layout_hash && s.layout_hash && v.layout_hash != s.layout_hash)
     fail(Code::kVersion,
-         "layout_hash: the policy learned another layout of observations or actions than the task has%s%s%s",
+         "layout_hash: the policy was trained with another layout of observations or actions than the task "
+         "has%s%s%s",
          difference_of(v, s).text, origin, task);
   if (v.control_dt > 0 && s.control_dt > 0 && std::abs(v.control_dt - s.control_dt) > 1e-6f)
-    fail(Code::kVersion, "control_dt: the policy has %g s, the task %g s%s%s",
+    fail(Code::kVersion, "control_dt: the policy has %g s, but the task has %g s%s%s",
          static_cast<double>(v.control_dt), static_cast<double>(s.control_dt), origin, task);
 }
 

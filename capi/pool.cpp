@@ -132,7 +132,7 @@ size_t block_bytes(const rdm_pool_config* c, size_t* engines) {
 }
 
 [[noreturn]] void too_small(const rdm_pool_config* c, size_t bytes) {
-  fail(Code::kRange, "bytes: %zu, %zu are needed", bytes, block_bytes(c, nullptr));
+  fail(Code::kRange, "bytes: %zu are too few, %zu are needed", bytes, block_bytes(c, nullptr));
 }
 
 void end_pool(rdm_pool* p) {
@@ -357,7 +357,7 @@ rdm_result rdm_pool_write_state(const rdm_pool* p, int32_t env, void* bytes, siz
     need(size, "size");
     const size_t n = p->pool->state_size(env);
     if (bytes) {
-      if (capacity < n) fail(Code::kRange, "capacity: %zu bytes, %zu are needed", capacity, n);
+      if (capacity < n) fail(Code::kRange, "capacity: %zu bytes are too few, %zu are needed", capacity, n);
       Writer out(bytes, capacity);
       p->pool->get_state(env, out);
     }

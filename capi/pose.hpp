@@ -28,7 +28,7 @@ inline Pose need_pose(const rdm_pose* X, const char* name) {
   const Quat& q = out.q;
   const double square = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
   if (!finite(out.p) || !(square > 0.99 && square < 1.01))
-    fail(Code::kArgument, "%s: not finite, or its quaternion is not of unit length", name);
+    fail(Code::kArgument, "%s: it is not finite, or its quaternion does not have length 1", name);
   return {out.p, normalized(q)};
 }
 

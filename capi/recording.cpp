@@ -231,7 +231,7 @@ rdm_result rdm_recording_read_file(rdm_recording** out, const char* path) {
     char magic[4] = {};
     file.read(0, magic, std::min<size_t>(sizeof magic, static_cast<size_t>(file.size())));
     if (std::memcmp(magic, "PK\x03\x04", sizeof magic) != 0)
-      fail(Code::kFormat, "%s: wrong magic: not a file of this kind", path);
+      fail(Code::kFormat, "%s: it is not a file of this kind (wrong magic number)", path);
     open_handle(out, hooks, [&] { return Recording::read(file, hooks); });
   });
 }
@@ -260,14 +260,14 @@ namespace {
 void check_match(const RecordingSpec& r, const Pool& p) {
   const auto same = [](int32_t recording, int32_t pool, const char* what) {
     if (recording != pool)
-      fail(Code::kArgument, "%s: the recording has %d, the pool %d", what, recording, pool);
+      fail(Code::kArgument, "%s: the recording has %d, but the pool has %d", what, recording, pool);
   };
   same(r.obs_dim, p.obs_dim(), "obs_dim");
   same(r.action_dim, p.task().action_dim(), "action_dim");
   same(r.cost_dim, p.cost_dim(), "cost_dim");
   if (r.num_points) same(r.num_points, p.sense().num_points, "num_points");
   if (r.point_color && !p.sensed().point_color)
-    fail(Code::kArgument, "point_color: the recording has colours, the pool has none");
+    fail(Code::kArgument, "point_color: the recording has colours, but the pool has none");
   if (r.layout_hash && r.layout_hash != layout_hash(p.task()))
     fail(Code::kArgument, "layout_hash: the recording's differs from the pool's");
 }
@@ -302,8 +302,8 @@ rdm_result rdm_recording_begin_step(rdm_recording* r, const rdm_pool* p, const f
       check_rows("action", b.action, i, actions);
       check_rows("label", label, i, actions);
       if (const size_t size = x.spec().state_bytes ? pool.state_size(i) : 0; size != x.spec().state_bytes)
-        fail(Code::kArgument, "state_bytes: the recording has %zu, world %d %zu", x.spec().state_bytes, i,
-             size);
+        fail(Code::kArgument, "state_bytes: the recording has %zu, but world %d has %zu",
+             x.spec().state_bytes, i, size);
     }
     x.make_room(p, n);
     for (int32_t i = 0; i < n; ++i) {
@@ -325,7 +325,7 @@ rdm_result rdm_recording_end_step(rdm_recording* r, const rdm_pool* p, const uin
   return change(r, [&](Recording& x) {
     const Use use(p);
     const Pool& pool = *p->pool;
-    if (!x.follows(p)) fail(Code::kState, "end_step: no begin_step of this pool came before");
+    if (!x.follows(p)) fail(Code::kState, "end_step: begin_step was not called with this pool before");
     const Buffers& b = pool.buffers();
     const auto costs = static_cast<size_t>(x.spec().cost_dim);
     for (int32_t i = 0; i < pool.config().num_envs; ++i)
@@ -352,10 +352,11 @@ namespace {
 DemoRows demo_rows(const Recording& x, const AgentConfig& a) {
   const RecordingSpec& s = x.spec();
   if (s.obs_dim != a.obs_dim || s.action_dim != a.action_dim)
-    fail(Code::kArgument, "recording: its rows have %d observations and %d actions, the agent's %d and %d",
-         s.obs_dim, s.action_dim, a.obs_dim, a.action_dim);
+    fail(Code::kArgument,
+         "recording: its rows have %d observations and %d actions, but the agent's have %d and %d", s.obs_dim,
+         s.action_dim, a.obs_dim, a.action_dim);
   if (s.layout_hash && a.layout_hash && s.layout_hash != a.layout_hash)
-    fail(Code::kArgument, "recording: of another layout than the agent's");
+    fail(Code::kArgument, "recording: its layout differs from the agent's");
   if (x.rows() > INT32_MAX / 2)
     fail(Code::kRange, "recording: %lld rows are more than 2^30", static_cast<long long>(x.rows()));
   const RecordingRows v = x.view();
@@ -368,7 +369,7 @@ PointRows demo_clouds(const Recording& x, const PointNetShape& eyes, Vector<int1
   const RecordingRows v = x.view();
   if (!eyes.points || !v.points) return out;
   if (x.spec().num_points != eyes.points)
-    fail(Code::kArgument, "recording: its clouds have %d points, the agent's encoder reads %d",
+    fail(Code::kArgument, "recording: its clouds have %d points, but the agent's encoder reads %d",
          x.spec().num_points, eyes.points);
   int32_t origin[3];
   for (int k = 0; k < 3; ++k)

@@ -10,7 +10,7 @@ namespace {
 
 void check_match(const AgentConfig& a, int32_t repeat, const Pool& p) {
   const auto same = [](int32_t agent, int32_t pool, const char* what) {
-    if (agent != pool) fail(Code::kArgument, "%s: the agent has %d, the pool %d", what, agent, pool);
+    if (agent != pool) fail(Code::kArgument, "%s: the agent has %d, but the pool has %d", what, agent, pool);
   };
   same(a.num_envs, p.config().num_envs, "num_envs");
   same(a.obs_dim, p.obs_dim(), "obs_dim");
@@ -21,7 +21,7 @@ void check_match(const AgentConfig& a, int32_t repeat, const Pool& p) {
   if (p.config().autoreset == Autoreset::kOff)
     fail(Code::kState, "pool: its autoreset is off, so a rollout would stop at the first end of an episode");
   if (repeat % p.repeat() != 0)
-    fail(Code::kArgument, "action_repeat: the agent's is %d, no multiple of the pool's %d", repeat,
+    fail(Code::kArgument, "action_repeat: the agent's, %d, is not a multiple of the pool's, %d", repeat,
          p.repeat());
 }
 
@@ -92,12 +92,12 @@ class Shielded {
     if (agent.eyes().points && shield->predicts())
       fail(Code::kUnsupported, "shield: the agent's encoder needs points, which copies do not have");
     if (shield->steps() * pool.repeat() != agent.action_repeat())
-      fail(Code::kArgument, "shield: its decisions last %d control steps, the agent's %d",
+      fail(Code::kArgument, "shield: its decisions last %d control steps, but the agent's last %d",
            shield->steps() * pool.repeat(), agent.action_repeat());
     how_ = agent.shield_learn();
     penalty_ = static_cast<float>(agent.shield_penalty());
     if (how_ == ShieldLearn::kCost && agent.config().cost_dim < 1)
-      fail(Code::kArgument, "shield_learn: cost, and the agent has none");
+      fail(Code::kArgument, "shield_learn: cost needs an agent with costs, and cost_dim is 0");
     counts_ = shield->counts();
     shield->forget_blocks();  // options, tensors or a policy may have been set
   }
@@ -173,17 +173,19 @@ PointRows clouds_of(const Agent& agent, const Pool& pool) {
   if (!eyes.points) return clouds;
   clouds.metres = pool.sensed().points;
   if (!clouds.metres)
-    fail(Code::kState, "pool: it has no points for the agent's encoder: option modality=points");
+    fail(Code::kState, "pool: it has no points for the agent's encoder; set its option modality=points");
   if (pool.sense().num_points != eyes.points)
-    fail(Code::kArgument, "encoder_points: the agent's encoder reads %d, the pool has %d", eyes.points,
+    fail(Code::kArgument, "encoder_points: the agent's encoder reads %d, but the pool has %d", eyes.points,
          pool.sense().num_points);
   if (eyes.color && !pool.sensed().point_color)
-    fail(Code::kState, "pool: its points have no colours for the agent's encoder: option point_color");
+    fail(Code::kState,
+         "pool: its points have no colours for the agent's encoder; set its option point_color=true");
   if (eyes.color) clouds.colors = pool.sensed().point_color;
   if (!eyes.classes) return clouds;
   if (const int32_t count = point_classes(pool.sense(), pool.task().scene()); count > eyes.classes)
-    fail(Code::kArgument, "encoder_classes: the pool's points have %d classes, the agent's encoder reads %d",
-         count, eyes.classes);
+    fail(Code::kArgument,
+         "encoder_classes: the pool's points have %d classes, but the agent's encoder reads %d", count,
+         eyes.classes);
   clouds.classes = pool.sensed().point_class;
   return clouds;
 }
@@ -193,7 +195,9 @@ void rollout(Agent& agent, Pool& pool, Shield* shield, DecisionBuffers& d, Epoch
   const PointRows clouds = clouds_of(agent, pool);
   agent.need_no_update("rollout");
   if (agent.missing() != agent.horizon())
-    fail(Code::kState, "agent: a horizon was begun by hand: finish it with record and update");
+    fail(Code::kState,
+         "agent: a horizon was begun with rdm_agent_act; finish it with rdm_agent_record and "
+         "rdm_agent_update");
   agent.ranks().set_pool(pool.config().seed, static_cast<int32_t>(pool.config().autoreset),
                          pool.options_hash());
   Shielded shielded(agent, pool, shield);
@@ -241,7 +245,8 @@ rdm_result rdm_agent_rollout(rdm_agent* a, rdm_pool* p, rdm_epoch* io) {
 rdm_result rdm_agent_set_shield(rdm_agent* a, rdm_shield* shield) {
   return call_on(a, [&] {
     if (shield) need_handle(shield);
-    if (a->agent->missing() != a->agent->horizon()) fail(Code::kState, "set_shield: a horizon has begun");
+    if (a->agent->missing() != a->agent->horizon())
+      fail(Code::kState, "set_shield: a horizon has begun; set the shield between epochs");
     a->shield = shield;
   });
 }

@@ -33,14 +33,15 @@ void need_whole(const rdm_scene* scene) {
 void need_open(const rdm_scene* scene) {
   need_whole(scene);
   if (scene->complete)
-    fail(Code::kState, "scene: it is complete: nothing is added or set after the first find, touch or joint");
+    fail(Code::kState,
+         "scene: it is complete; nothing can be added or set after the first find, touch or joint");
 }
 
 void need_name(const char* name, const char* what) {
   if (!name) fail(Code::kArgument, "%s is NULL", what);
   if (!*name || std::strlen(name) >= kNameSize)
-    fail(Code::kRange, "%s: %s has not 1 to %d characters", what, Quoted(name).text, kNameSize - 1);
-  if (!is_clean_text(name)) fail(Code::kArgument, "%s: control characters, or not UTF-8", what);
+    fail(Code::kRange, "%s: %s must have 1 to %d characters", what, Quoted(name).text, kNameSize - 1);
+  if (!is_clean_text(name)) fail(Code::kArgument, "%s: it has control characters, or is not UTF-8", what);
 }
 
 template <class Rows, class NameOf>
@@ -83,7 +84,7 @@ void need_new_name(const rdm_scene& scene, const char* name) {
                          scene.robots, [](const PlacedRobot& r) { return r.name.text; }, name) >= 0 ||
                      find_name(
                          scene.def.bodies, [](const BodyDef& b) { return b.name.text; }, name) >= 0;
-  if (taken) fail(Code::kArgument, "scene: the name %s is taken", Quoted(name).text);
+  if (taken) fail(Code::kArgument, "scene: the name %s is already used", Quoted(name).text);
 }
 
 ShapeDef read_shape(const rdm_scene& scene, const rdm_shape_def& in, const char* owner) {
@@ -122,7 +123,7 @@ Inertia inertia_of(const BodyDef& body, double mass) {
 
 void add_material(rdm_scene* scene, const char* name, double friction) {
   if (scene->materials.size() == kMaxMaterials)
-    fail(Code::kRange, "material %s: more than %d", Quoted(name).text, kMaxMaterials);
+    fail(Code::kRange, "material %s: there are more than %d materials", Quoted(name).text, kMaxMaterials);
   scene->frictions.reserve(scene->frictions.size() + 1);  // both grow, or none
   scene->materials.push_back(name);
   scene->frictions.push_back(friction);
@@ -165,7 +166,7 @@ void need_unique_shapes(const Scene& scene) {
   for (size_t i = 0; i < scene.shapes.size(); ++i)
     for (size_t k = 0; k < i; ++k)
       if (scene.shapes[k].def.name == scene.shapes[i].def.name.text)
-        fail(Code::kArgument, "shape %s is there twice", scene.shapes[i].def.name.text);
+        fail(Code::kArgument, "shape %s occurs twice", scene.shapes[i].def.name.text);
 }
 
 // The name of the body or robot that carries a shape, "" of what stands still.
@@ -279,7 +280,7 @@ rdm_result rdm_scene_get_number(rdm_scene* scene, const char* key, double* value
         *value = o.flag(key);
         return;
       case OptionKind::kText:
-        fail(Code::kArgument, "option %s is a text: rdm_scene_get_text has it", key);
+        fail(Code::kArgument, "option %s is a text; call rdm_scene_get_text", key);
     }
   });
 }
@@ -290,7 +291,7 @@ rdm_result rdm_scene_get_text(rdm_scene* scene, const char* key, const char** te
     need(key, "key");
     need(text, "text");
     if (find_option(*scene->options, key).kind != OptionKind::kText)
-      fail(Code::kArgument, "option %s is no text: rdm_scene_get_number has it", key);
+      fail(Code::kArgument, "option %s is not a text; call rdm_scene_get_number", key);
     *text = scene->options->text(key);
   });
 }
@@ -330,7 +331,7 @@ rdm_result rdm_scene_add_material(rdm_scene* scene, const char* name) {
     need_name(name, "material");
     if (find_name(
             scene->materials, [](const Name& n) { return n.text; }, name) >= 0)
-      fail(Code::kArgument, "material %s is there twice", Quoted(name).text);
+      fail(Code::kArgument, "material %s occurs twice", Quoted(name).text);
     add_material(scene, name, kNoFriction);
   });
 }
@@ -391,7 +392,7 @@ rdm_result rdm_scene_set_gravity(rdm_scene* scene, const double gravity[3]) {
     need_open(scene);
     need(gravity, "gravity");
     const Vec3 g = vec(gravity);
-    if (!(norm(g) <= 1000)) fail(Code::kRange, "gravity: not finite, or above 1000 m/s2");
+    if (!(norm(g) <= 1000)) fail(Code::kRange, "gravity: it is not finite, or above 1000 m/s2");
     scene->def.gravity = g;
     scene->draws = {};
   });
@@ -414,7 +415,7 @@ rdm_result rdm_scene_add_robot(rdm_scene* scene, const rdm_scene_robot* robot, i
     need_name(in.name, "robot.name");
     need_new_name(*scene, in.name);
     if (scene->robots.size() == kMostThings)
-      fail(Code::kRange, "robot %s: more than %d", in.name, kMostThings);
+      fail(Code::kRange, "robot %s: the scene has more than %d robots", in.name, kMostThings);
     PlacedRobot placed;
     placed.name = in.name;
     if (in.own) {
@@ -425,8 +426,8 @@ rdm_result rdm_scene_add_robot(rdm_scene* scene, const rdm_scene_robot* robot, i
     } else {
       if (in.robot < 0 || (in.robot == 0 && in.filled == 0))
         fail(Code::kArgument,
-             "robot.robot of %s: left out: of rdm_robot_find, in a struct that rdm_scene_robot_init has "
-             "filled",
+             "robot.robot of %s is not set: fill the struct by rdm_scene_robot_init, then set the number "
+             "that rdm_robot_find gives",
              in.name);
       placed.listed = RobotRef(in.robot);
     }
@@ -462,7 +463,7 @@ rdm_result rdm_scene_add_body(rdm_scene* scene, const rdm_body_def* body, int32_
     need_name(in.name, "body.name");
     need_new_name(*scene, in.name);
     if (scene->def.bodies.size() == kMostThings)
-      fail(Code::kRange, "body %s: more than %d", in.name, kMostThings);
+      fail(Code::kRange, "body %s: the scene has more than %d bodies", in.name, kMostThings);
     if (in.num_shapes < 1 || in.num_shapes > kMostShapes)
       fail(Code::kRange, "body %s: num_shapes: %d is outside [1, %d]", in.name, in.num_shapes, kMostShapes);
     if (!in.shapes) fail(Code::kArgument, "body %s: shapes is NULL", in.name);
@@ -498,7 +499,7 @@ rdm_result rdm_scene_add_object(rdm_scene* scene, int32_t object, const char* na
     need(pose, "pose");
     if (!(scale >= 0.05 && scale <= 20)) fail(Code::kRange, "scale: %g is outside [0.05, 20]", scale);
     if (scene->def.bodies.size() == kMostThings)
-      fail(Code::kRange, "body %s: more than %d", name, kMostThings);
+      fail(Code::kRange, "body %s: the scene has more than %d bodies", name, kMostThings);
     BodyDef body = make_object_body(*ref, name, from_abi(*pose), 0, scale, 0);
     scene->def.bodies.reserve(scene->def.bodies.size() + 1);
     const int32_t material = material_of(scene, ref->material);  // nothing fails behind it
@@ -514,7 +515,7 @@ rdm_result rdm_scene_add_static(rdm_scene* scene, const rdm_shape_def* shape) {
     need(shape, "shape");
     ShapeDef s = read_shape(*scene, *shape, nullptr);
     if (scene->def.statics.size() == kMostThings)
-      fail(Code::kRange, "shape %s: more than %d that stand still", s.name.text, kMostThings);
+      fail(Code::kRange, "shape %s: the scene has more than %d fixed shapes", s.name.text, kMostThings);
     validate_static(s, static_cast<int32_t>(scene->materials.size()));
     scene->def.statics.push_back(std::move(s));
   });

@@ -25,8 +25,9 @@ int32_t held_steps(const rdm_policy* policy, int32_t repeat) {
   need_handle(policy);
   const int32_t held = policy->policy->view().action_repeat;
   if (held % repeat != 0)
-    fail(Code::kArgument, "policy: it holds an action for %d control steps, no multiple of the pool's %d",
-         held, repeat);
+    fail(Code::kArgument,
+         "policy: it holds an action for %d control steps, which is not a multiple of the pool's %d", held,
+         repeat);
   return held / repeat;
 }
 
@@ -36,10 +37,11 @@ void add_policy(rdm_shield* s, const rdm_policy* policy) {
   if (policy->policy->view().eyes.points)
     fail(Code::kUnsupported, "policy: it reads points, which copies do not have");
   if (held != steps)
-    fail(Code::kArgument, "policy: it holds an action for %d steps of the pool, a decision is %d", held,
+    fail(Code::kArgument,
+         "policy: it holds an action for %d steps of the pool, but a decision of the shield lasts %d", held,
          steps);
   if (s->num_backups == Shield::kMostPolicies)
-    fail(Code::kRange, "shield: it has %d policies already", s->num_backups);
+    fail(Code::kRange, "shield: it already has %d policies, the most that are allowed", s->num_backups);
   FrozenMean& backup = s->backups[s->num_backups];
   backup.open(s->hooks, policy->policy, kBackupRows);
   s->shield->add_policy(&backup);
@@ -76,7 +78,7 @@ rdm_result rdm_project(const float* normals, const float* bounds, size_t count, 
     for (size_t j = 0; j < dim; ++j)
       if (!std::isfinite(action[j])) fail(Code::kArgument, "action: entry %zu is not finite", j);
     if (!nearest_action(rows, n, width, action, nearest))
-      fail(Code::kArgument, "normals: no action keeps all %d rows", n);
+      fail(Code::kArgument, "normals: no action in [-1, 1] keeps all %d rows", n);
   });
 }
 
@@ -86,7 +88,7 @@ rdm_result rdm_pool_guard_at(const rdm_pool* p, int32_t i, rdm_guard* io, float*
     const int32_t dim = p->pool->task().action_dim();
     Vector<float> row(static_cast<size_t>(dim));
     Guard g;
-    if (!p->pool->guard_at(i, &g, row.data())) fail(Code::kRange, "i: the pool has no guard %d", i);
+    if (!p->pool->guard_at(i, &g, row.data())) fail(Code::kRange, "i: the pool has no guard number %d", i);
     rdm_guard out{};
     out.column = g.column;
     out.entry = single_entry({row.data(), g.bound}, dim);
@@ -238,7 +240,8 @@ rdm_result rdm_shield_get_plan(const rdm_shield* s, const rdm_pool* pool, int32_
     const float* rows = s->shield->plan(*pool->pool, env, &decisions);
     const size_t count = static_cast<size_t>(decisions) * static_cast<size_t>(s->shield->action_dim());
     if (plan) {
-      if (capacity < count) fail(Code::kRange, "capacity: %zu numbers, %zu are needed", capacity, count);
+      if (capacity < count)
+        fail(Code::kRange, "capacity: %zu numbers are too few, %zu are needed", capacity, count);
       std::copy_n(rows, count, plan);
     }
     *size = count;

@@ -280,11 +280,11 @@ void compare(const char* task, const Vector<Trace>& a, const Vector<Trace>& b, c
                        : a[i].world != b[i].world ? "the world"
                                                   : nullptr;
     if (what)
-      fail(Code::kArgument, "task %s: %s: %s is another one %s; step %d", task,
+      fail(Code::kArgument, "task %s: %s: %s differs %s; step %d", task,
            kPartNames[static_cast<int>(a[i].part)], what, when, a[i].step);
   }
   if (a.size() != b.size())
-    fail(Code::kArgument, "task %s: judge: an episode has another length %s", task, when);
+    fail(Code::kArgument, "task %s: judge: the length of an episode differs %s", task, when);
 }
 
 void check_functions(const ResolvedPoolConfig& plan, Patience* patience) {
@@ -326,7 +326,7 @@ void check_functions(const ResolvedPoolConfig& plan, Patience* patience) {
   }
   for (size_t i = 0; i < 5; ++i)
     if (heap.calls[i] >= 16 && heap.grown[i] > heap.calls[i] * 9 / 10)
-      fail(Code::kArgument, "task %s: %s: it leaves memory behind in %d of %d calls", plan.info->name,
+      fail(Code::kArgument, "task %s: %s does not free all of its memory in %d of %d calls", plan.info->name,
            kPartNames[i], heap.grown[i], heap.calls[i]);
 }
 
@@ -340,8 +340,7 @@ void compare_rows(const Pool& a, const Pool& b, const char* task, int32_t step, 
   const auto same = [&](const auto* p, const auto* q, int32_t width, const char* what) {
     for (int32_t i = 0; i < kPoolWorlds; ++i)
       if (std::memcmp(p + i * width, q + i * width, sizeof *p * static_cast<size_t>(width)) != 0)
-        fail(Code::kArgument, "task %s: %s of world %d is another one %s; step %d", task, what, i, when,
-             step);
+        fail(Code::kArgument, "task %s: %s of world %d differs %s; step %d", task, what, i, when, step);
   };
   same(x.obs, y.obs, a.obs_dim(), "the observation");
   same(x.reward, y.reward, 1, "the reward");
@@ -351,7 +350,7 @@ void compare_rows(const Pool& a, const Pool& b, const char* task, int32_t step, 
   same(x.success, y.success, 1, "the success");
   for (int32_t i = 0; i < kPoolWorlds; ++i)
     if (a.hash(i) != b.hash(i))
-      fail(Code::kArgument, "task %s: the state of world %d is another one %s; step %d", task, i, when, step);
+      fail(Code::kArgument, "task %s: the state of world %d differs %s; step %d", task, i, when, step);
 }
 
 // No function of the task may fail in a world.
@@ -420,7 +419,7 @@ void check_pools(PoolConfig config, const char* task, Patience* patience) {
     step_pool(one, Baseline::kHold, step, patience);
     for (int32_t i = 0; i < kPoolWorlds; ++i)
       if (one->buffers().status[i] & kStatusDiverged)
-        fail(Code::kArgument, "task %s: with the hold action world %d diverges; step %d", task, i, step);
+        fail(Code::kArgument, "task %s: world %d diverges with the hold action; step %d", task, i, step);
   }
 }
 
@@ -430,7 +429,7 @@ rdm_result rdm_task_check(const char* task, const char* settings, rdm_stop stop,
                           size_t error_size) {
   const rdm_result r = call([&] {
     need(task, "task");
-    if (error && error_size < 1) fail(Code::kRange, "error_size: it is 0, but error is set");
+    if (error && error_size < 1) fail(Code::kRange, "error_size: it is 0, but error is not NULL");
     register_builtin_tasks();
     PoolConfig config;
     config.hooks = host();

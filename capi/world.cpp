@@ -29,7 +29,7 @@ World& look(const rdm_world* world) {
 }
 World& change(rdm_world* world) {
   need_handle(world);
-  if (world->fixed) fail(Code::kState, "world: observe changes nothing");
+  if (world->fixed) fail(Code::kState, "world: it cannot be changed in observe");
   return *world->world;
 }
 
@@ -51,17 +51,17 @@ void need_robot(const World& w, int32_t robot) {
 void need_free_base(const World& w, int32_t robot) {
   need_robot(w, robot);
   const ArticulationDef& def = w.scene().def.articulations[static_cast<size_t>(robot)];
-  if (!def.free_base) fail(Code::kState, "robot %s: its base is fixed", def.name.text);
+  if (!def.free_base) fail(Code::kState, "robot %s: its base is fixed and cannot be moved", def.name.text);
 }
 void need_numbers(const double* x, size_t n, size_t wanted, const char* name) {
-  if (n != wanted) fail(Code::kRange, "n: %zu %s, the robot has %zu", n, name, wanted);
+  if (n != wanted) fail(Code::kRange, "n: there are %zu %s, but the robot has %zu", n, name, wanted);
   need(x, name);
 }
 
 void need_joints(const World& w, int32_t first, size_t n) {
   const int32_t all = w.scene().num_links;
   if (first < 0 || first > all || n > static_cast<size_t>(all - first))
-    fail(Code::kRange, "first, n: %zu joints from %d on, of %d", n, first, all);
+    fail(Code::kRange, "first, n: %zu joints from %d on are more than the %d that there are", n, first, all);
 }
 
 double* place_of(const rdm_factor& f, int64_t materials, Dynamics* d) {
@@ -301,7 +301,8 @@ rdm_result rdm_world_set_feedforward(rdm_world* world, int32_t first, const doub
   return call_inside([&] {
     World& w = change(world);
     if (!w.feedforward())
-      fail(Code::kState, "world: its scene has no feed-forward, rdm_scene_set_feedforward");
+      fail(Code::kState,
+           "world: its scene has no feed-forward; call rdm_scene_set_feedforward when it is built");
     need_joints(w, first, n);
     if (n > 0) need(efforts, "efforts");
     for (size_t i = 0; i < n; ++i)
@@ -324,8 +325,10 @@ rdm_result rdm_world_get_gravity(const rdm_world* world, int32_t robot, double* 
 rdm_result rdm_world_set_factors(rdm_world* world, const rdm_factor* factors, size_t count) {
   return call_inside([&] {
     World& w = change(world);
-    if (!w.dynamics()) fail(Code::kState, "world: its scene is not adjustable, rdm_scene_set_adjustable");
-    if (count > SIZE_MAX / 64) fail(Code::kRange, "count: %zu is too many", count);
+    if (!w.dynamics())
+      fail(Code::kState,
+           "world: its scene is not adjustable; call rdm_scene_set_adjustable when it is built");
+    if (count > SIZE_MAX / 64) fail(Code::kRange, "count: %zu is too large", count);
     if (count > 0) need(factors, "factors");
     Dynamics& d = w.edit_dynamics();
     const auto materials = static_cast<int64_t>(world->scene->materials.size());

@@ -104,21 +104,21 @@ void Agent::read_live() {
 }
 
 void Agent::set_option(const OptionInput& option) {
-  if (!option.key) fail(Code::kArgument, "agent option: the key is NULL");
+  if (!option.key) fail(Code::kArgument, "agent option: its key is NULL");
   need_no_update("set_option");
   Options& o = resolved_.options;
   if (const OptionSpec* spec = o.spec_of(option.key); spec && !spec->live)
-    fail(Code::kState, "agent option %s: fixed at creation", spec->key);
+    fail(Code::kState, "agent option %s is fixed at creation and cannot be changed", spec->key);
   if (same_name("cost_limit", option.key) && resolved_.rate_steps > 0)
-    fail(Code::kState, "agent option cost_limit: the limit on column 0 is cost_limit_per_step");
+    fail(Code::kState, "agent option cost_limit cannot be set: cost_limit_per_step limits column 0 instead");
   for (const char* key : {"cost_limit", "cost_limit_per_step"}) {
     if (!same_name(key, option.key)) continue;
     const double limit = o.number(key);
     o.set(option, "agent");
     if ((limit < 0) == (o.number(key) < 0)) return read_live();
     o.set({key, nullptr, limit}, "agent");
-    fail(Code::kState, "agent option %s: column 0 was created %s%s", key, limit < 0 ? "without" : "with",
-         same_name(key, "cost_limit") ? " a limit" : " it");
+    fail(Code::kState, "agent option %s: the agent was created %s%s on column 0, which cannot be changed",
+         key, limit < 0 ? "without" : "with", same_name(key, "cost_limit") ? " a limit" : " it");
   }
   o.set(option, "agent");
   read_live();
@@ -134,16 +134,19 @@ void Agent::begin_decision(const char* call) {
   need_no_update(call);
   if (collector_.idle()) check_cancel(), sampler_ = 0;
   if (imitation_.wanted() && !imitation_.has_rows())
-    fail(Code::kState, "%s: option imitation needs a recording: rdm_agent_set_recording comes first", call);
+    fail(Code::kState, "%s: option imitation needs a recording; call rdm_agent_set_recording first", call);
 }
 
 void Agent::need_generation(const char* call, const Transition& t) {
   if (t.generation == 0) return;
   if (nets_.average)
-    fail(Code::kUnsupported, "%s: generation: with option average a policy file is not what samples", call);
+    fail(Code::kUnsupported,
+         "%s: generation: with option average a policy file holds the running mean, not the network that "
+         "samples",
+         call);
   if (sampler_ == 0) sampler_ = generation();
   if (t.generation != sampler_)
-    fail(Code::kState, "%s: generation: %llu sampled this, the policy's is %llu", call,
+    fail(Code::kState, "%s: generation: the rows were sampled by %llu, but the policy is %llu", call,
          static_cast<unsigned long long>(t.generation), static_cast<unsigned long long>(sampler_));
 }
 
@@ -151,7 +154,7 @@ void Agent::values(const float* obs, int32_t rows, float* value, float* cost) co
   const SharedOptions& o = resolved_.shared;
   need_no_update("values");
   if (o.normalize_reward || o.normalize_cost)
-    fail(Code::kUnsupported, "agent: with %s its critics have no fixed unit",
+    fail(Code::kUnsupported, "agent: with option %s the values of its critics have no fixed unit",
          o.normalize_reward ? "normalize_reward" : "normalize_cost");
   collector_.value_rows(obs, rows, value, cost);
   const auto factor = static_cast<float>(o.reward_factor);
@@ -179,15 +182,16 @@ void Agent::discard() {
 
 void Agent::need_idle(const char* call) const {
   need_no_update(call);
-  if (!collector_.idle()) fail(Code::kState, "%s: only between epochs; this horizon has begun", call);
+  if (!collector_.idle())
+    fail(Code::kState, "%s is allowed between epochs only, and this horizon has begun", call);
 }
 
 void Agent::need_clouds(const DemoRows& demo) const {
   if (!resolved_.sees() || demo.rows < 1) return;
   if (!demo.clouds.points)
-    fail(Code::kArgument, "recording: without points, which the agent's encoder needs");
+    fail(Code::kArgument, "recording: it has no points, which the agent's encoder needs");
   if (resolved_.eyes.classes && !demo.clouds.classes)
-    fail(Code::kArgument, "recording: its points have no classes, the encoder reads %d",
+    fail(Code::kArgument, "recording: its points have no classes, but the encoder reads %d",
          resolved_.eyes.classes);
   if (resolved_.eyes.color && !demo.clouds.colors)
     fail(Code::kArgument, "recording: its points have no colours, which the encoder reads");
@@ -212,7 +216,7 @@ PretrainReport Agent::pretrain(const PointRows& clouds, const uint8_t* label, in
   const HostScope scope(resolved_.config.hooks);
   need_idle("pretrain");
   const PointNetShape& eyes = resolved_.eyes;
-  if (!eyes.points) fail(Code::kState, "pretrain: the agent has no encoder");
+  if (!eyes.points) fail(Code::kState, "pretrain: the agent has no encoder; set option encoder");
   check_rows("points", clouds.metres, nullptr, rows, eyes.row_points());
   need_channels(eyes, clouds, static_cast<size_t>(rows));
   check_cancel();
@@ -337,7 +341,7 @@ void Agent::read_state(const void* bytes, size_t size, bool apply) {
 }
 
 void Agent::check_state(const void* bytes, size_t size) {
-  if (!bytes) fail(Code::kArgument, "agent state: NULL");
+  if (!bytes) fail(Code::kArgument, "agent state is NULL");
   read_state(bytes, size, false);
 }
 

@@ -30,7 +30,9 @@ constexpr double kEntropyOfUnit = 1.4189385332046727;  // of a normal with devia
 void Agent::need_no_update(const char* call) const {
   if (updating())
     fail(Code::kState,
-         "%s: an update has begun: rdm_agent_update_slice until it is done, or rdm_agent_discard", call);
+         "%s: an update is under way; finish it with rdm_agent_update_slice, or drop it with "
+         "rdm_agent_discard",
+         call);
 }
 
 void Agent::update(const float* last_obs, Epoch* out) {
@@ -42,8 +44,8 @@ void Agent::begin_update(const float* last_obs) {
   const FpMode mode;
   need_no_update("update");
   hear_cancel();
-  if (missing() > 0) fail(Code::kState, "update: %d decisions are missing in this horizon", missing());
-  if (!last_obs) fail(Code::kArgument, "last_obs: NULL");
+  if (missing() > 0) fail(Code::kState, "update: this horizon lacks %d decisions", missing());
+  if (!last_obs) fail(Code::kArgument, "last_obs is NULL");
   check_rows("last_obs", last_obs, nullptr, resolved_.config.num_envs, resolved_.obs_dim());
   try {
     collector_.settle();
@@ -59,7 +61,7 @@ void Agent::begin_update(const float* last_obs) {
 
 bool Agent::update_on(int32_t units, Epoch* out) {
   const FpMode mode;
-  if (!updating()) fail(Code::kState, "update_slice: no update has begun");
+  if (!updating()) fail(Code::kState, "update_slice: there is no update under way");
   const bool whole = units == kWhole;
   try {
     for (; updating() && (whole || units > 0); units -= !whole) unit(whole);

@@ -68,7 +68,7 @@ class Selection {
         return (among(p.add, name) || among(p.too, name)) && !among(p.less, name);
       };
       if (set_where(seen, meant)) return;
-      fail(Code::kNotFound, "%s: %s: the observation has no such field", key_, p.name);
+      fail(Code::kNotFound, "%s: the observation has no field %s", key_, p.name);
     }
     need_fields(word);
     Vector<const char*> names;
@@ -102,7 +102,7 @@ class Selection {
   }
   void need_fields(const char* word) const {
     if (fields_.empty())
-      fail(Code::kArgument, "%s: '%s' needs the names of fields, and the config has none", key_,
+      fail(Code::kArgument, "%s: '%s' needs the names of fields, but config.fields is empty", key_,
            Quoted(word).text);
   }
 

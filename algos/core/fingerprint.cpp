@@ -72,16 +72,17 @@ void read_option(Reader& in, Options& o, int32_t i, bool apply) {
   in.text(key, sizeof key);
   in.text(text, sizeof text);
   const auto number = in.value<double>();
-  if (std::strcmp(key, s.key) != 0) fail(Code::kFormat, "%s: option %s where %s belongs", kWhat, key, s.key);
+  if (std::strcmp(key, s.key) != 0)
+    fail(Code::kFormat, "%s: it has option %s where option %s is expected", kWhat, key, s.key);
   if (s.live) {
     const bool good = number >= s.low && number <= s.high &&
                       (s.kind == OptionKind::kNumber || number == std::floor(number));
-    if (!good) fail(Code::kFormat, "%s: option %s is %g", kWhat, s.key, number);
+    if (!good) fail(Code::kFormat, "%s: option %s is %g, which is not possible", kWhat, s.key, number);
     // Without a limit there is no multiplier and no column of the critic for it.
     if (same_name(s.key, "cost_limit") && (number < 0) != (o.number(s.key) < 0))
-      fail(Code::kFormat, "%s: column 0 is %s a limit there", kWhat, number < 0 ? "without" : "with");
+      fail(Code::kFormat, "%s: column 0 was %s a limit in it", kWhat, number < 0 ? "without" : "with");
     if (same_name(s.key, "cost_limit_per_step") && (number < 0) != (o.number(s.key) < 0))
-      fail(Code::kFormat, "%s: option cost_limit_per_step is %g there", kWhat, number);
+      fail(Code::kFormat, "%s: option cost_limit_per_step is %g in it, which is not possible", kWhat, number);
     if (apply) o.set({s.key, nullptr, number}, "agent");
     return;
   }
@@ -89,9 +90,9 @@ void read_option(Reader& in, Options& o, int32_t i, bool apply) {
   char here[kOptionTextSize];
   o.print(i, here);
   if (s.kind == OptionKind::kText)
-    fail(Code::kFormat, "%s: option %s is '%s' there, '%s' in this agent", kWhat, s.key, Quoted(text).text,
-         Quoted(here).text);
-  fail(Code::kFormat, "%s: option %s is %.9g there, %s in this agent", kWhat, s.key, number, here);
+    fail(Code::kFormat, "%s: option %s is '%s' in it, but '%s' in this agent", kWhat, s.key,
+         Quoted(text).text, Quoted(here).text);
+  fail(Code::kFormat, "%s: option %s is %.9g in it, but %s in this agent", kWhat, s.key, number, here);
 }
 
 }  // namespace
@@ -124,26 +125,27 @@ void read_fingerprint(Reader& in, ResolvedAgentConfig& resolved, bool apply) {
   char algo[kOptionTextSize];
   in.text(algo, sizeof algo);
   if (std::strcmp(algo, resolved.config.algo) != 0)
-    fail(Code::kFormat, "%s: of algorithm %s, this agent is %s", kWhat, algo, resolved.config.algo);
+    fail(Code::kFormat, "%s: it belongs to algorithm %s, but this agent is %s", kWhat, algo,
+         resolved.config.algo);
   Field fields[kFields];
   list_fields(resolved, fields);
   for (const Field& f : fields)
     if (const auto there = in.value<int32_t>(); there != f.value)
-      fail(Code::kFormat, "%s: %s is %d there, %d in this agent", kWhat, f.name, there, f.value);
+      fail(Code::kFormat, "%s: %s is %d in it, but %d in this agent", kWhat, f.name, there, f.value);
   for (int32_t i = 0; i < resolved.num_limited; ++i)
     if (const auto there = in.value<int32_t>(); there != resolved.column[i])
-      fail(Code::kFormat, "%s: cost column %d is limited there, %d in this agent", kWhat, there,
+      fail(Code::kFormat, "%s: cost column %d is limited in it, but %d in this agent", kWhat, there,
            resolved.column[i]);
   for (int32_t i = 0; i < resolved.num_limited; ++i) {
     const auto there = in.value<double>();
     const bool live = resolved.column[i] == 0;  // option cost_limit
     if (!live && there != resolved.limit[i])
-      fail(Code::kFormat, "%s: the limit of cost column %d is %g there, %g in this agent", kWhat,
+      fail(Code::kFormat, "%s: the limit of cost column %d is %g in it, but %g in this agent", kWhat,
            resolved.column[i], there, resolved.limit[i]);
   }
   Options& o = resolved.options;
   if (const auto there = in.value<int32_t>(); there != first_count(o))
-    fail(Code::kFormat, "%s: %d options there, %d in this agent", kWhat, there, first_count(o));
+    fail(Code::kFormat, "%s: it has %d options, this agent %d", kWhat, there, first_count(o));
   const auto read = [&](bool later) {
     for (int32_t i = 0; i < o.count(); ++i)
       if (is_later(o.spec(i)) == later) read_option(in, o, i, apply);
@@ -152,7 +154,8 @@ void read_fingerprint(Reader& in, ResolvedAgentConfig& resolved, bool apply) {
   if (in.left() > 0)
     read(true);
   else if (uses_later(o))
-    fail(Code::kFormat, "%s: without the options cost_limit_per_step, episode_steps of this agent", kWhat);
+    fail(Code::kFormat, "%s: it lacks the options cost_limit_per_step and episode_steps of this agent",
+         kWhat);
   in.expect_end();
 }
 

@@ -228,7 +228,7 @@ void Networks::visit(StateIo& io) {
     Adam& a = block[i].adam;
     io.counter(a.t);
     const StateView<float> m = io.numbers(a.m, a.size, -1e20, 1e20), v = io.numbers(a.v, a.size, 0, 1e38);
-    if (m) io.require(moments_agree(m, v, a.size), "moments that no gradients have");
+    if (m) io.require(moments_agree(m, v, a.size), "moments that no gradients can give");
   }
 }
 

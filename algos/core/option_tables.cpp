@@ -152,12 +152,12 @@ bool take_owner(const AlgoInfo& algo, OptionInput& in) {
   const AlgoInfo& owner = algo_at(algo_find(name));
   in.key = colon + 1;
   if (!knows(owner, in.key))
-    fail(Code::kNotFound, "%s default: \"%s\" has no option \"%s\"", kOwner, name, in.key);
+    fail(Code::kNotFound, "%s default: algorithm \"%s\" has no option \"%s\"", kOwner, name, in.key);
   return &owner == &algo;
 }
 
 void lay_default(Options& o, const AlgoInfo& algo, OptionInput in) {
-  if (!in.key) fail(Code::kArgument, "%s default: the key is NULL", kOwner);
+  if (!in.key) fail(Code::kArgument, "%s default: its key is NULL", kOwner);
   if (!take_owner(algo, in)) return;
   if (!o.knows(in.key)) {
     if (!any_algo_knows(in.key)) o.set(in, kOwner);  // names the nearest key

@@ -22,7 +22,7 @@ uint64_t hash_of(const T* x, int32_t count) {
 }  // namespace
 
 void RankSetup::add(const char* kind, const char* name, uint64_t value, bool number) {
-  if (words_ == kMost) fail(Code::kInternal, "ranks: more than %zu words of a setup", kMost);
+  if (words_ == kMost) fail(Code::kInternal, "ranks: the setup has more than %zu words", kMost);
   if (word_) word_[words_] = {kind, name, number}, mine_[words_] = value;
   ++words_;
 }
@@ -85,9 +85,10 @@ void RankSetup::set_pool(uint64_t seed, int32_t autoreset, uint64_t options) {
 
 void RankSetup::compare() const {
   for (int32_t r = 0; r < count_; ++r) {
-    if (of(r)[0] != kMark) fail(Code::kState, "ranks: what stands at the place of rank %d is no message", r);
+    if (of(r)[0] != kMark)
+      fail(Code::kState, "ranks: the data received for rank %d is not a message of this library", r);
     if (of(r)[1] != static_cast<uint64_t>(r))
-      fail(Code::kState, "ranks: at the place of rank %d is one that calls itself rank %lld", r,
+      fail(Code::kState, "ranks: the message received for rank %d says that it comes from rank %lld", r,
            static_cast<long long>(of(r)[1]));
   }
   for (size_t i = 2; i < words_; ++i)
@@ -95,8 +96,8 @@ void RankSetup::compare() const {
       if (of(r)[i] == of(0)[i]) continue;
       const Word& w = word_[i];
       if (!w.number)
-        fail(Code::kState, "ranks: %s%s: rank %d has another one than rank 0", w.kind, w.name, r);
-      fail(Code::kState, "ranks: %s%s: rank %d has %lld, rank 0 has %lld", w.kind, w.name, r,
+        fail(Code::kState, "ranks: %s%s of rank %d differs from that of rank 0", w.kind, w.name, r);
+      fail(Code::kState, "ranks: %s%s differs: rank %d has %lld, rank 0 has %lld", w.kind, w.name, r,
            static_cast<long long>(of(r)[i]), static_cast<long long>(of(0)[i]));
     }
 }

@@ -58,7 +58,7 @@ void Ranks::look(const void* message, int32_t rank, Head& head) const {
   Head theirs;
   std::memcpy(&theirs, message, sizeof theirs);
   if (theirs.exchange != head.exchange)
-    fail(Code::kState, "ranks: rank %d is at exchange %llu, this one, %d, at %llu", rank,
+    fail(Code::kState, "ranks: rank %d is at exchange %llu, but this one (%d) is at %llu", rank,
          static_cast<unsigned long long>(theirs.exchange), this->rank(),
          static_cast<unsigned long long>(head.exchange));
   head.cancelled |= theirs.cancelled;
@@ -197,7 +197,8 @@ void Ranks::agree(uint64_t hash) {
   }
   for (int32_t r = 0; r < count(); ++r)
     if (of(r) != of(most))
-      fail(Code::kState, "ranks: rank %d has drifted: it learned %016llx, %d of %d learned %016llx", r,
+      fail(Code::kState,
+           "ranks: rank %d has other weights: its hash is %016llx, that of %d of %d ranks is %016llx", r,
            static_cast<unsigned long long>(of(r)), held, count(), static_cast<unsigned long long>(of(most)));
 }
 

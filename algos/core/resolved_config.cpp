@@ -27,9 +27,9 @@ void check_range(const char* name, int64_t value, int64_t low, int64_t high) {
 // Two fields of a row of observations, of which both names and entries differ.
 void check_apart(const ObsField& a, const ObsField& b, int32_t i, int32_t j) {
   if (std::strcmp(a.name, b.name) == 0)
-    fail(Code::kArgument, "fields[%d]: the name '%s' is that of fields[%d]", j, Quoted(b.name).text, i);
+    fail(Code::kArgument, "fields[%d]: its name '%s' is also that of fields[%d]", j, Quoted(b.name).text, i);
   if (a.offset < b.offset + b.count && b.offset < a.offset + a.count)
-    fail(Code::kArgument, "fields[%d]: entries of '%s' are those of fields[%d], '%s', too", j,
+    fail(Code::kArgument, "fields[%d]: entries of '%s' are also those of fields[%d], '%s'", j,
          Quoted(b.name).text, i, Quoted(a.name).text);
 }
 
@@ -43,24 +43,26 @@ void check_config(const AgentConfig& c) {
   check_range("ranks", c.ranks.count, 1, kMaxRanks);
   check_range("rank", c.ranks.rank, 0, c.ranks.count - 1);
   if (c.ranks.count > 1 && !c.ranks.gather)
-    fail(Code::kArgument, "gather: NULL with %d ranks", c.ranks.count);
+    fail(Code::kArgument, "gather is NULL with %d ranks", c.ranks.count);
   check_range("num_defaults", c.num_defaults, 0, INT32_MAX);
   check_range("num_options", c.num_options, 0, INT32_MAX);
   if (c.num_defaults && !c.defaults)
-    fail(Code::kArgument, "defaults: NULL with num_defaults %d", c.num_defaults);
-  if (c.num_options && !c.options) fail(Code::kArgument, "options: NULL with num_options %d", c.num_options);
-  if (!c.algo) fail(Code::kArgument, "algo: NULL");
+    fail(Code::kArgument, "defaults is NULL with num_defaults %d", c.num_defaults);
+  if (c.num_options && !c.options)
+    fail(Code::kArgument, "options is NULL with num_options %d", c.num_options);
+  if (!c.algo) fail(Code::kArgument, "algo is NULL");
   if (!std::isfinite(c.control_dt) || c.control_dt < 0)
-    fail(Code::kRange, "control_dt: %g is not a time", static_cast<double>(c.control_dt));
+    fail(Code::kRange, "control_dt: %g is not a positive number of seconds",
+         static_cast<double>(c.control_dt));
   if (c.task && std::strlen(c.task) >= kOptionTextSize)
-    fail(Code::kRange, "task: longer than %d characters", kOptionTextSize - 1);
+    fail(Code::kRange, "task: its name is longer than %d characters", kOptionTextSize - 1);
   for (int32_t i = 0; c.initial_mean && i < c.action_dim; ++i)
     if (!std::isfinite(c.initial_mean[i])) fail(Code::kArgument, "initial_mean[%d] is not finite", i);
   check_range("num_fields", c.num_fields, 0, kMaxFields);
-  if (c.num_fields && !c.fields) fail(Code::kArgument, "fields: NULL with num_fields %d", c.num_fields);
+  if (c.num_fields && !c.fields) fail(Code::kArgument, "fields is NULL with num_fields %d", c.num_fields);
   for (int32_t i = 0; i < c.num_fields; ++i) {
     const ObsField& f = c.fields[i];
-    if (!f.name) fail(Code::kArgument, "fields[%d]: the name is NULL", i);
+    if (!f.name) fail(Code::kArgument, "fields[%d].name is NULL", i);
     if (f.offset < 0 || f.count < 1 || f.offset > c.obs_dim - f.count)
       fail(Code::kRange, "fields[%d]: entries %d to %lld are not within obs_dim %d", i, f.offset,
            static_cast<long long>(f.offset) + f.count, c.obs_dim);
@@ -84,7 +86,7 @@ MlpShape parse_shape(const char* key, const char* widths, Activation activation,
     while (*end == ' ') ++end;
     if (end == p || (*end && *end != ','))
       fail(Code::kArgument, "%s: '%s' is not a list of widths such as 64,64", key, Quoted(widths).text);
-    if (s.num_hidden == kMaxHidden) fail(Code::kRange, "%s: more than %d layers", key, kMaxHidden);
+    if (s.num_hidden == kMaxHidden) fail(Code::kRange, "%s: there are more than %d layers", key, kMaxHidden);
     check_range(key, width, 1, kMaxWidth);
     s.hidden[s.num_hidden++] = static_cast<int32_t>(width);
     p = *end ? end + 1 : end;
@@ -189,10 +191,11 @@ void resolve_networks(ResolvedAgentConfig& resolved) {
 void resolve_blocks(ResolvedAgentConfig& resolved) {
   const int32_t blocks = resolved.shared.blocks, ranks = resolved.config.ranks.count;
   const int32_t envs = resolved.all_envs(), own = blocks / ranks;
-  if (envs % blocks != 0) fail(Code::kArgument, "blocks: %d do not divide %d environments", blocks, envs);
+  if (envs % blocks != 0)
+    fail(Code::kArgument, "blocks: %d does not divide the number of environments, %d", blocks, envs);
   if (blocks % ranks != 0 || (ranks > 1 && (own & (own - 1)) != 0))
-    fail(Code::kArgument, "blocks: %d are not %d ranks times a power of two, as %d would be", blocks, ranks,
-         ranks);
+    fail(Code::kArgument, "blocks: %d is not the number of ranks, %d, times a power of two, as %d would be",
+         blocks, ranks, ranks);
   resolved.blocks = own;
 }
 
@@ -222,18 +225,19 @@ void resolve_batches(ResolvedAgentConfig& resolved) {
 
 void check_pairs(const ResolvedAgentConfig& resolved) {
   const SharedOptions& o = resolved.shared;
-  if (o.std_min > o.std_max) fail(Code::kRange, "std_min: above std_max");
+  if (o.std_min > o.std_max) fail(Code::kRange, "std_min: it is above std_max");
   if (o.init_std < o.std_min || o.init_std > o.std_max)
     fail(Code::kRange, "init_std: %g is outside [std_min, std_max]", o.init_std);
   if (o.state_std) {
     if (!o.learn_std || o.linear_std)
-      fail(Code::kUnsupported, "std_mode: state is for a deviation that is learned, without a schedule");
+      fail(Code::kUnsupported, "std_mode: state needs learn_std=true and std_schedule=none");
     if (o.init_std <= o.std_min || o.init_std >= o.std_max)
-      fail(Code::kRange, "init_std: at a bound, where std_mode=state has no gradient");
+      fail(Code::kRange, "init_std: it equals std_min or std_max, where std_mode=state has no gradient");
   }
-  if (o.lr_min > o.lr_max) fail(Code::kRange, "lr_min: above lr_max");
+  if (o.lr_min > o.lr_max) fail(Code::kRange, "lr_min: it is above lr_max");
   if (o.terminal_cost && resolved.episode_steps <= 0)
-    fail(Code::kArgument, "terminal_cost: needs max_steps, which is unknown (0), or option episode_steps");
+    fail(Code::kArgument,
+         "terminal_cost: it needs the length of an episode: set config.max_steps or option episode_steps");
 }
 
 }  // namespace

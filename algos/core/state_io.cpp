@@ -40,7 +40,7 @@ void StateReader::section(const char tag[4]) {
   in_.need_section(tag);
   std::memcpy(tag_, tag, 4);
   const size_t n = std::strlen(listed_);
-  if (n + 4 >= sizeof listed_) fail(Code::kInternal, "agent state: more sections than are listed");
+  if (n + 4 >= sizeof listed_) fail(Code::kInternal, "agent state: it has more sections than are listed");
   std::memcpy(listed_ + n, tag, 4);
 }
 
@@ -71,7 +71,7 @@ StateView<T> StateReader::read(T* x, size_t count, double low, double high) {
   for (size_t i = 0; i < count; ++i) {
     const auto d = static_cast<double>(view[i]);
     if (!(d >= low && d <= high))
-      fail(Code::kFormat, "agent state: section %s holds %g, outside [%g, %g]", tag_, d, low, high);
+      fail(Code::kFormat, "agent state: section %s holds %g, which is outside [%g, %g]", tag_, d, low, high);
   }
   return view;
 }
@@ -86,7 +86,7 @@ StateView<double> StateReader::numbers(double* x, size_t count, double low, doub
 int64_t StateReader::integer(int64_t& x, int64_t low, int64_t high) {
   const auto v = in_.value<int64_t>();
   if (v < low || v > high)
-    fail(Code::kFormat, "agent state: section %s holds %lld, outside [%lld, %lld]", tag_,
+    fail(Code::kFormat, "agent state: section %s holds %lld, which is outside [%lld, %lld]", tag_,
          static_cast<long long>(v), static_cast<long long>(low), static_cast<long long>(high));
   if (apply_) x = v;
   return v;

@@ -23,7 +23,8 @@ void check(const ResolvedAgentConfig& resolved, const DemoRows& demo, const Clon
   if (how.action_std != 0) {
     need("action_std", how.action_std, resolved.shared.std_min, resolved.shared.std_max);
     if (resolved.state_std())
-      fail(Code::kUnsupported, "action_std: with std_mode=state the deviation is the network's; 0 leaves it");
+      fail(Code::kUnsupported,
+           "action_std: with std_mode=state the network gives the deviation; set action_std to 0");
   }
   if (demo.rows < 1) fail(Code::kArgument, "recording: it has no rows");
 }

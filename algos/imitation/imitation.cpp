@@ -55,8 +55,8 @@ void Imitation::visit(StateIo& io) {
   auto mark = static_cast<int64_t>(mark_);
   const int64_t there = io.integer(mark, INT64_MIN, INT64_MAX);
   io.require(there == static_cast<int64_t>(mark_),
-             mark_ ? "the mark of another recording than the agent's"
-                   : "the mark of a recording: rdm_agent_set_recording comes first");
+             mark_ ? "the hash of another recording than the agent's"
+                   : "the hash of a recording; call rdm_agent_set_recording first");
   io.stream(stream_);
 }
 

@@ -210,7 +210,7 @@ PretrainReport pretrain_eyes(const ResolvedAgentConfig& resolved, const PointRow
   const size_t points = sz(eyes.points);
   for (size_t i = 0; i < sz(rows) * points; ++i)
     if (label[i] >= how.num_labels)
-      fail(Code::kRange, "label: row %zu has %d, outside [0, %d)", i / points, int32_t{label[i]},
+      fail(Code::kRange, "label: row %zu has %d, which is outside [0, %d)", i / points, int32_t{label[i]},
            how.num_labels);
   Pretraining training(eyes, clouds, label, how.num_labels, workers);
   const size_t size = training.size(), encoder = eyes.num_params();

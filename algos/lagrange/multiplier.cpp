@@ -55,7 +55,7 @@ void Multiplier::visit(StateIo& io) {
   io.number(raw_, -1e20, 1e20);
   const StateView<double> m = io.number(m_, -1e100, 1e100), v = io.number(v_, 0, 1e200);
   // As of any moments of Adam: |m| <= 7.27 sqrt(v) (networks.cpp).
-  if (m) io.require(std::abs(m[0]) <= 8 * std::sqrt(v[0]) + 1e-100, "moments that no costs have");
+  if (m) io.require(std::abs(m[0]) <= 8 * std::sqrt(v[0]) + 1e-100, "moments that no costs can give");
   io.counter(t_);
 }
 

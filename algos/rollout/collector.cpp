@@ -39,7 +39,7 @@ void check_costs(const char* name, const float* x, int32_t rows, int32_t columns
   const size_t count = static_cast<size_t>(rows) * static_cast<size_t>(columns);
   for (size_t i = 0; i < count; ++i)
     if (x[i] < 0)
-      fail(Code::kArgument, "%s: row %zu, column %zu is %g, less than 0", name,
+      fail(Code::kArgument, "%s: row %zu, column %zu is %g, but it must be 0 or more", name,
            i / static_cast<size_t>(columns), i % static_cast<size_t>(columns), static_cast<double>(x[i]));
 }
 
@@ -184,10 +184,10 @@ void Collector::act_rows(const Workspace& workspace, const float* obs, const Poi
 void Collector::check_clouds(const PointRows& clouds) const {
   const PointNetShape& eyes = nets_->eyes;
   if (!eyes.points) {
-    if (clouds) fail(Code::kState, "points: the agent has no encoder");
+    if (clouds) fail(Code::kState, "points: the agent has no encoder, so it cannot read them");
     return;
   }
-  if (!clouds.metres) fail(Code::kState, "act: the agent's encoder needs points");
+  if (!clouds.metres) fail(Code::kState, "act: the agent's encoder needs points; call rdm_agent_act_points");
   need_channels(eyes, clouds, static_cast<size_t>(rollout_.num_envs));
   check_rows("points", clouds.metres, nullptr, rollout_.num_envs, eyes.row_points());
 }
@@ -198,8 +198,8 @@ int32_t Collector::share(int32_t rows) const {
 }
 
 void Collector::need_turn(const char* call) const {
-  if (pending_) fail(Code::kState, "%s: the last sampled actions were not recorded", call);
-  if (missing() == 0) fail(Code::kState, "%s: the horizon is full, update is due", call);
+  if (pending_) fail(Code::kState, "%s: the actions that were sampled last have not been recorded", call);
+  if (missing() == 0) fail(Code::kState, "%s: the horizon is full; call rdm_agent_update first", call);
 }
 
 void Collector::act(const float* obs, bool sample, float* action, const PointRows& clouds) {
@@ -235,14 +235,15 @@ void Collector::check_actions(const float* action) const {
   const size_t dim = rollout_.action_dim;
   for (size_t i = 0; i < resolved_->num_envs() * dim; ++i)
     if (!(std::abs(action[i]) <= Noise::kMaxAction))
-      fail(Code::kRange, "action: row %zu, entry %zu is %g, outside [%g, %g]", i / dim, i % dim,
+      fail(Code::kRange, "action: row %zu, entry %zu is %g, which is outside [%g, %g]", i / dim, i % dim,
            static_cast<double>(action[i]), static_cast<double>(-Noise::kMaxAction),
            static_cast<double>(Noise::kMaxAction));
 }
 
 void Collector::put(const float* obs, const float* action, const Transition& t) {
   need_turn("put");
-  if (nets_->eyes.points) fail(Code::kUnsupported, "put: the agent's encoder needs points");
+  if (nets_->eyes.points)
+    fail(Code::kUnsupported, "put: the agent's encoder needs points, which put does not take");
   check_rows("obs", obs, nullptr, rollout_.num_envs, rollout_.obs_dim);
   check_actions(action);
   check(t);
@@ -291,8 +292,8 @@ void Collector::value_rows(const float* obs, int32_t rows, float* value, float* 
 
 void Collector::check(const Transition& t) const {
   const AgentConfig& c = resolved_->config;
-  if (!t.reward) fail(Code::kArgument, "reward: NULL");
-  if (!t.cost && c.cost_dim > 0) fail(Code::kArgument, "cost: NULL with cost_dim %d", c.cost_dim);
+  if (!t.reward) fail(Code::kArgument, "reward is NULL");
+  if (!t.cost && c.cost_dim > 0) fail(Code::kArgument, "cost is NULL with cost_dim %d", c.cost_dim);
   check_flags("terminated", t.terminated);
   check_flags("truncated", t.truncated);
   check_flags("valid", t.valid);
@@ -300,7 +301,8 @@ void Collector::check(const Transition& t) const {
   check_rows("reward", t.reward, t.valid, c.num_envs, 1);
   check_costs("cost", t.cost, c.num_envs, c.cost_dim);
   for (size_t i = 0; i < resolved_->num_envs(); ++i) {
-    if (t.steps && t.steps[i] < 0) fail(Code::kRange, "steps: row %zu is %d", i, t.steps[i]);
+    if (t.steps && t.steps[i] < 0)
+      fail(Code::kRange, "steps: row %zu is %d, which is outside the bounds", i, t.steps[i]);
     if (!flag(t.valid, i, true)) continue;
     if (t.final_obs && flag(t.truncated, i, false) &&
         !all_finite(t.final_obs + i * resolved_->obs_dim(), resolved_->obs_dim()))
@@ -439,8 +441,9 @@ void Collector::record_row(const Transition& t, int32_t env) {
 }
 
 void Collector::record(const Transition& t) {
-  if (missing() == 0) fail(Code::kState, "record: the horizon is full, update is due");
-  if (!pending_) fail(Code::kState, "record: no sampled act came before");
+  if (missing() == 0) fail(Code::kState, "record: the horizon is full; call rdm_agent_update first");
+  if (!pending_)
+    fail(Code::kState, "record: no sampled action came before; call rdm_agent_act with RDM_ACT_SAMPLE first");
   check(t);
   follow(t);
 }

@@ -62,12 +62,12 @@ void need(const void* p, const char* name) {
 void need_handle(const rdm_import* i) {
   need(i, "import");
   if (i->tag != rdm_import::kTag)
-    refuse(RDM_ERROR_ARGUMENT, "import: no handle of this kind, or one that was destroyed");
+    refuse(RDM_ERROR_ARGUMENT, "import: it is not a handle of this kind, or it was destroyed");
 }
 
 void need_robot(const rdm_import* i) {
   need_handle(i);
-  if (i->object) refuse(RDM_ERROR_ARGUMENT, "import: it is an object, no robot");
+  if (i->object) refuse(RDM_ERROR_ARGUMENT, "import: it is an object, not a robot");
 }
 
 rdm_import_config defaults() {
@@ -87,7 +87,7 @@ Options read_options(const rdm_import_config* in) {
              in->struct_size, first, kMaxStruct);
     std::memcpy(&o, in, std::min<size_t>(in->struct_size, sizeof o));
     if (o.error && o.error_size < 1)
-      refuse(RDM_ERROR_RANGE, "config.error_size: %d is less than 1, but error is set", o.error_size);
+      refuse(RDM_ERROR_RANGE, "config.error_size: %d is less than 1, but error is not NULL", o.error_size);
     if (o.format < RDM_IMPORT_AUTO || o.format > RDM_IMPORT_ROBOT)
       refuse(RDM_ERROR_RANGE, "config.format: %d is outside [0, 3]", o.format);
     if (o.kind < -1 || o.kind > RDM_ROBOT_ARM)
@@ -136,7 +136,7 @@ void try_create(rdm_robot_def def) {
   const rdm_result r = rdm_robot_create(&robot, &def);
   std::string text = rdm_last_error();
   const std::string head = std::string("robot ") + taken.name + ": ";
-  if (text != head + "the name is taken") {
+  if (text != head + "the name is already used") {
     if (text.compare(0, head.size(), head) == 0) text.replace(0, head.size(), "robot " + clean(name) + ": ");
     refuse(r ? r : RDM_ERROR_INTERNAL, "%s", text.c_str());
   }
@@ -153,7 +153,7 @@ void try_create(rdm_robot_def def) {
 void need_taken(const Options& o, int32_t format) {
   if (format == RDM_IMPORT_MJCF && o.density > 0)
     refuse(RDM_ERROR_ARGUMENT,
-           "config.density: of URDF alone; a geom of MJCF says its own mass or density, else has 1000 kg/m3");
+           "config.density: it is for URDF only; a geom of MJCF has its own mass or density, or 1000 kg/m3");
   if (format != RDM_IMPORT_ROBOT) return;
   const std::pair<const char*, bool> said[] = {
       {"density", o.density > 0},    {"slide_range", o.slide_range > 0}, {"root", !o.root.empty()},
@@ -161,7 +161,8 @@ void need_taken(const Options& o, int32_t format) {
       {"flange", !o.flange.empty()},
   };
   for (const auto& [name, given] : said)
-    if (given) refuse(RDM_ERROR_ARGUMENT, "config.%s: of URDF and MJCF; a .robot file says it itself", name);
+    if (given)
+      refuse(RDM_ERROR_ARGUMENT, "config.%s: it is for URDF and MJCF only; a .robot file contains it", name);
 }
 
 // XML that is not well-formed up to its first element too.
@@ -234,7 +235,7 @@ rdm_result rdm_import_read_file(rdm_import** out, const char* path, const rdm_im
     auto made = std::make_unique<rdm_import>();
     try {
       if (o.format == RDM_IMPORT_AUTO && names_xml(path) && !begins_as_xml(bytes))
-        refuse(RDM_ERROR_FORMAT, "line 1: no XML: it does not begin with <");
+        refuse(RDM_ERROR_FORMAT, "line 1: this is not XML: it does not begin with <");
       read(bytes, o, &made->draft);
     } catch (const Refusal& r) {
       refuse(r.code, "%s: %s", clean(path, 160).c_str(), r.text.c_str());
@@ -387,7 +388,7 @@ rdm_result rdm_import_create_object(rdm_import** out, int32_t object) {
 rdm_result rdm_import_get_object_def(const rdm_import* i, rdm_object_def* io) {
   return call(nullptr, [&] {
     need_handle(i);
-    if (!i->object) refuse(RDM_ERROR_ARGUMENT, "import: it is a robot, no object");
+    if (!i->object) refuse(RDM_ERROR_ARGUMENT, "import: it is a robot, not an object");
     need(io, "io");
     if (io->struct_size < sizeof *io || io->struct_size > kMaxStruct)
       refuse(RDM_ERROR_ARGUMENT, "io.struct_size: %u is outside [%zu, %zu]; set it by rdm_object_def_init",

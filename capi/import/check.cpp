@@ -124,8 +124,8 @@ struct Checker {
     const auto all = pairs();
     const auto at_home = touching(all, home, -1);
     for (const size_t i : at_home)
-      d.note(RDM_NOTE_CHECK, 0, "at home %s touches %s", d.shapes[static_cast<size_t>(all[i].a)].name,
-             d.shapes[static_cast<size_t>(all[i].b)].name);
+      d.note(RDM_NOTE_CHECK, 0, "in the home pose %s touches %s",
+             d.shapes[static_cast<size_t>(all[i].a)].name, d.shapes[static_cast<size_t>(all[i].b)].name);
     for (size_t r = 0; r < d.links.size(); ++r) {
       if (std::any_of(d.couplings.begin(), d.couplings.end(),
                       [&](const rdm_robot_coupling& c) { return c.link == static_cast<int32_t>(r); }))
@@ -146,8 +146,8 @@ struct Checker {
         }
       }
       if (count)
-        d.note(RDM_NOTE_CHECK, 0, "joint %s alone, from %.3g to %.3g: %s touch", d.links[r].joint, low, high,
-               what.c_str());
+        d.note(RDM_NOTE_CHECK, 0, "while joint %s alone moves from %.3g to %.3g, %s touch", d.links[r].joint,
+               low, high, what.c_str());
     }
   }
 
@@ -202,13 +202,14 @@ struct Checker {
     }
     const auto rest = step(&q, home);
     if (rest.empty()) {
-      d.note(RDM_NOTE_CHECK, 0, "its inertia is singular: a joint moves nothing");
+      d.note(RDM_NOTE_CHECK, 0, "its inertia matrix is singular: a joint moves no mass");
       return;
     }
     for (size_t k = 0; k < n; ++k)
       if (rest[k] > 0.05)
-        d.note(RDM_NOTE_CHECK, 0, "joint %s shakes at home: %.3g a second after 1.5 s", d.links[k].joint,
-               rest[k]);
+        d.note(RDM_NOTE_CHECK, 0,
+               "joint %s does not settle in the home pose: its velocity is %.3g per second after 1.5 s",
+               d.links[k].joint, rest[k]);
     for (size_t k = 0; k < n; ++k) {
       const rdm_robot_link& l = d.links[k];
       if (std::any_of(d.couplings.begin(), d.couplings.end(),
@@ -222,11 +223,11 @@ struct Checker {
         const auto speeds = step(&q, target);
         const double away = speeds.empty() ? 1 : std::abs(q[k] - end);
         if (away > 0.05 * (l.upper - l.lower))
-          d.note(RDM_NOTE_CHECK, 0, "joint %s does not reach %.3g in 2 s: it stands at %.3g", l.joint, end,
-                 q[k]);
+          d.note(RDM_NOTE_CHECK, 0, "joint %s does not reach %.3g in 2 s: it is at %.3g", l.joint, end, q[k]);
         else if (speeds[k] > 0.05)
-          d.note(RDM_NOTE_CHECK, 0, "joint %s shakes at %.3g: %.3g a second after 1.5 s", l.joint, end,
-                 speeds[k]);
+          d.note(RDM_NOTE_CHECK, 0,
+                 "joint %s does not settle at %.3g: its velocity is %.3g per second after 1.5 s", l.joint,
+                 end, speeds[k]);
       }
     }
   }

@@ -279,7 +279,8 @@ Mesh hull_of(const std::vector<V3>& points, Budget* budget) {
   Mesh out;
   out.points = corners_of(points);
   if (out.points.size() > kMostOfHull)
-    refuse(RDM_ERROR_RANGE, "the hull of %zu corners: more than %zu", out.points.size(), kMostOfHull);
+    refuse(RDM_ERROR_RANGE, "the hull has %zu corners, which is more than %zu", out.points.size(),
+           kMostOfHull);
   if (out.points.size() < 4) return out;
   double size = 0;
   for (const V3& p : out.points) size = std::max(size, norm(p - out.points[0]));

@@ -78,7 +78,7 @@ void Budget::spend(Cost cost, size_t count) {
   size_t& spent = spent_[static_cast<size_t>(cost)];
   const CostLimit& limit = kCostLimits[static_cast<size_t>(cost)];
   if (count > limit.most - spent)
-    refuse(RDM_ERROR_RANGE, "more than %zu %s in one import", limit.most, limit.what);
+    refuse(RDM_ERROR_RANGE, "there are more than %zu %s in one import", limit.most, limit.what);
   spent += count;
 }
 
@@ -97,7 +97,7 @@ std::string read_file(const std::string& path, size_t longest) {
     const auto bytes = rdm::read_file(path.c_str(), {"", 0, longest, Code::kRange});
     std::string out(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     if (out.compare(0, std::strlen(kPointer), kPointer) == 0)
-      refuse(RDM_ERROR_FORMAT, "%s: a pointer of Git LFS, not the file itself: git lfs pull brings it",
+      refuse(RDM_ERROR_FORMAT, "%s: this is a pointer of Git LFS, not the file itself; run git lfs pull",
              clean(path, 160).c_str());
     return out;
   } catch (const Error& e) {
@@ -135,7 +135,7 @@ void Draft::bind() {
 
 void Draft::note(int32_t kind, int32_t line, const char* pattern, ...) {
   if (notes.size() == kMostNotes) {
-    notes.push_back({kind, 0, "more was found than is listed here"});
+    notes.push_back({kind, 0, "there are more notes than are listed here"});
     return;
   }
   if (notes.size() > kMostNotes) return;

@@ -41,7 +41,7 @@ std::string Meshes::found(const Element& e, const std::string& written) {
   const size_t slash = name.find('/');
   if (slash != std::string::npos) path = there(name.substr(slash + 1));
   if (!path.empty())
-    out_->note(RDM_NOTE_CHANGED, e.line, "mesh %s: no folder %s holds it; %s was taken",
+    out_->note(RDM_NOTE_CHANGED, e.line, "mesh %s: there is no folder %s with it; %s was used",
                clean(written).c_str(), clean(name.substr(0, slash)).c_str(), clean(path, 160).c_str());
   return path;
 }
@@ -57,9 +57,10 @@ const std::string& Meshes::place(const Element& e, const std::string& name) {
 
 const Mesh* Meshes::find(const Element& e, const std::string& name) {
   try {
-    if (!options_.has_folder) refuse(RDM_ERROR_NOT_FOUND, "a text alone has no folder to look in");
+    if (!options_.has_folder)
+      refuse(RDM_ERROR_NOT_FOUND, "a text that is not from a file has no folder to search");
     const std::string& path = place(e, name);
-    if (path.empty()) refuse(RDM_ERROR_NOT_FOUND, "not found in the folders above the file");
+    if (path.empty()) refuse(RDM_ERROR_NOT_FOUND, "it was not found in the folders above the file");
     if (path != last_) {
       last_.clear();
       mesh_ = {};

@@ -84,7 +84,9 @@ bool MjcfReader::limited(const Element& e, const char* key, const std::string* l
   const auto n = numbers(e, "range", *range, 2, 2);
   const bool has_range = n[0] != 0 || n[1] != 0;
   if (has_range && !compiler.autolimits)
-    refuse_at(RDM_ERROR_FORMAT, e, "a range and no %s, where autolimits is false: it could hold or not", key);
+    refuse_at(RDM_ERROR_FORMAT, e,
+              "it has a range but no %s, and autolimits is false: it is not clear whether the range holds",
+              key);
   return has_range;
 }
 
@@ -122,7 +124,7 @@ Turn MjcfReader::turn_at(const Element& e, const std::string& c) const {
     const V3 raw_x{n[0], n[1], n[2]}, raw{n[3], n[4], n[5]};
     const V3 x = unit(raw_x), across = raw - dot(raw, x) * x;
     if (norm(raw_x) < 1e-9 || norm(across) < 1e-9)
-      refuse_at(RDM_ERROR_ARGUMENT, e, "xyaxes: an axis is 0, or they are one line");
+      refuse_at(RDM_ERROR_ARGUMENT, e, "xyaxes: an axis is 0, or the two are parallel");
     const V3 y = unit(across), z = cross(x, y);
     return turn_of({{{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}}});
   }
@@ -146,10 +148,10 @@ Pose MjcfReader::pose_at(const Element& e, const std::string& c) const {
 void MjcfReader::read_classes(const Element& e, const Class* parent, bool top) {
   const std::string* name = e.get("class");
   const std::string key = name ? *name : top ? "main" : "";
-  if (key.empty()) refuse_at(RDM_ERROR_FORMAT, e, "a class in a class needs a name");
+  if (key.empty()) refuse_at(RDM_ERROR_FORMAT, e, "a class within a class needs a name");
   check_children(e, "default");
   const Class*& row = classes[key];
-  if (row && !top) refuse_at(RDM_ERROR_ARGUMENT, e, "class %s stands twice", clean(key).c_str());
+  if (row && !top) refuse_at(RDM_ERROR_ARGUMENT, e, "class %s occurs twice", clean(key).c_str());
   // A second <default> of the file adds to the first one's class; classes read before do not change by it.
   Class& c = class_rows.emplace_back();
   c.parent = row ? row : parent;
@@ -191,7 +193,8 @@ void MjcfReader::read_compiler() {
     if (const auto* t = e->get("eulerseq")) {
       compiler.sequence = *t;
       if (t->size() != 3 || t->find_first_not_of("xyzXYZ") != std::string::npos)
-        refuse_at(RDM_ERROR_FORMAT, *e, "eulerseq: %s is not three of x, y, z", clean(*t).c_str());
+        refuse_at(RDM_ERROR_FORMAT, *e, "eulerseq: %s must be three letters out of x, y, z",
+                  clean(*t).c_str());
     }
     if (const auto* t = e->get("assetdir")) compiler.meshes = *t;
     if (const auto* t = e->get("meshdir")) compiler.meshes = *t;
@@ -207,7 +210,7 @@ void MjcfReader::read_compiler() {
     read_number("boundinertia", &compiler.least_moment);
     read_number("settotalmass", &compiler.total_mass);
     if (const auto* t = e->get("coordinate"))
-      if (*t != "local") refuse_at(RDM_ERROR_UNSUPPORTED, *e, "coordinate: only local is read");
+      if (*t != "local") refuse_at(RDM_ERROR_UNSUPPORTED, *e, "coordinate: only local is supported");
   }
   for (const auto& o : mujoco.children)
     for (const auto& f : o->children) {
@@ -237,9 +240,9 @@ void MjcfReader::read_assets() {
         key = file->substr(file->rfind('/') == std::string::npos ? 0 : file->rfind('/') + 1);
         key = key.substr(0, key.rfind('.'));
       }
-      if (key.empty()) refuse_at(RDM_ERROR_FORMAT, *m, "neither a name nor a file");
+      if (key.empty()) refuse_at(RDM_ERROR_FORMAT, *m, "it has neither a name nor a file");
       if (!assets.emplace(key, m).second)
-        refuse_at(RDM_ERROR_ARGUMENT, *m, "mesh %s stands twice", clean(key).c_str());
+        refuse_at(RDM_ERROR_ARGUMENT, *m, "mesh %s occurs twice", clean(key).c_str());
     }
   }
 }
@@ -264,7 +267,8 @@ void MjcfReader::read_keyframe() {
     size_t needed = 0;
     for (const std::string& name : order) needed += name.empty() ? 7 : 1;
     if (n.size() != needed) {
-      out->note(RDM_NOTE_DROPPED, k->line, "key: qpos has %zu numbers, these joints %zu", n.size(), needed);
+      out->note(RDM_NOTE_DROPPED, k->line, "key: qpos has %zu numbers, but these joints need %zu", n.size(),
+                needed);
       return;
     }
     size_t at = 0;
@@ -291,7 +295,7 @@ void MjcfReader::read() {
   for (BodyIn& b : model.bodies)
     for (JointIn& j : b.joints)
       if (!joint_by.emplace(j.name, &j).second)
-        refuse_at(RDM_ERROR_ARGUMENT, *j.element, "joint %s stands twice", clean(j.name).c_str());
+        refuse_at(RDM_ERROR_ARGUMENT, *j.element, "joint %s occurs twice", clean(j.name).c_str());
   find_driven();
   read_tendons();
   read_equalities();
@@ -307,9 +311,9 @@ void MjcfReader::read() {
 void read_mjcf(const std::string& bytes, const Options& options, Draft* out) {
   const auto mujoco = parse_xml(bytes, options, true, out);
   if (mujoco->tag == "mujocoinclude")
-    refuse_at(RDM_ERROR_FORMAT, *mujoco, "a part that other files include, no model of its own");
+    refuse_at(RDM_ERROR_FORMAT, *mujoco, "this file is a part that other files include, not a model");
   if (mujoco->tag != "mujoco")
-    refuse_at(RDM_ERROR_FORMAT, *mujoco, "no MJCF: the first element is not mujoco");
+    refuse_at(RDM_ERROR_FORMAT, *mujoco, "this is not MJCF: the first element is not mujoco");
   MjcfReader reader(*mujoco, options, out);
   reader.read();
   list_dropped(*mujoco, out);

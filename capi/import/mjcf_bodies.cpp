@@ -32,7 +32,8 @@ void MjcfReader::add_joint(const Element& e, const Pose& frame, const std::strin
   const std::string kind = type ? *type : "hinge";
   if (kind == "free") return drop_free(e);
   if (kind != "hinge" && kind != "slide")
-    refuse_at(RDM_ERROR_UNSUPPORTED, e, "type %s: neither hinge nor slide", clean(kind).c_str());
+    refuse_at(RDM_ERROR_UNSUPPORTED, e, "type %s is not supported: it must be hinge or slide",
+              clean(kind).c_str());
   JointIn j;
   j.element = &e;
   if (const auto* t = e.get("name")) j.name = *t;
@@ -54,7 +55,7 @@ void MjcfReader::add_joint(const Element& e, const Pose& frame, const std::strin
     j.upper = most_of(options, j.slides);
     j.lower = -j.upper;
     const std::string end = j.slides && options.slide_range > 0 ? format("%g", j.upper) : "2 pi";
-    out->note(RDM_NOTE_CHANGED, e.line, "joint %s %s without end: its range is +-%s%s%s",
+    out->note(RDM_NOTE_CHANGED, e.line, "joint %s %s without limits: its range is set to +-%s%s%s",
               clean(j.name).c_str(), j.slides ? "slides" : "turns", end.c_str(), j.slides ? " m" : "",
               in_file(e).c_str());
   }
@@ -64,7 +65,7 @@ void MjcfReader::add_joint(const Element& e, const Pose& frame, const std::strin
     const auto* t = value(e, key, c);
     const auto n = t ? numbers(e, key, *t, 1, 3, kMostDamping) : std::vector<double>{0};
     if (std::any_of(n.begin() + 1, n.end(), [](double x) { return x != 0; }))
-      refuse_at(RDM_ERROR_UNSUPPORTED, e, "%s: a polynomial is not read, its first number alone", key);
+      refuse_at(RDM_ERROR_UNSUPPORTED, e, "%s: only the first number of a polynomial is read", key);
     return n[0];
   };
   j.damping = coefficient("damping");
@@ -84,8 +85,7 @@ void MjcfReader::add_joint(const Element& e, const Pose& frame, const std::strin
 
 void MjcfReader::drop_free(const Element& e) {
   if (e.tag == "freejoint") check_attributes(e, "freejoint");
-  out->note(RDM_NOTE_DROPPED, e.line, "%s: the root stands still%s", clean(e.tag).c_str(),
-            in_file(e).c_str());
+  out->note(RDM_NOTE_DROPPED, e.line, "%s: the root is fixed%s", clean(e.tag).c_str(), in_file(e).c_str());
   order.emplace_back();
 }
 
@@ -95,7 +95,7 @@ Mass MjcfReader::inertial(const Element& e, const BodyIn& body, bool moves) {
   const std::string name = clean(body.name);
   Mass m;
   const std::string *mass = e.get("mass"), *diagonal = e.get("diaginertia"), *full = e.get("fullinertia");
-  if (!mass) refuse_at(RDM_ERROR_FORMAT, e, "body %s: no mass", name.c_str());
+  if (!mass) refuse_at(RDM_ERROR_FORMAT, e, "body %s has no mass", name.c_str());
   m.mass = number(e, "mass", *mass);
   const Pose X = pose_at(e);
   if (full) {
@@ -138,7 +138,8 @@ void MjcfReader::bound(const Element& e, const std::string& name, Mass* m) {
   if (compiler.balance && std::any_of(p.begin(), p.end(), [&](double x) { return sum - x < x; })) {
     p = {sum / 3, sum / 3, sum / 3};
     changed = true;
-    out->note(RDM_NOTE_CHANGED, e.line, "body %s: its moments are their mean (balanceinertia)", name.c_str());
+    out->note(RDM_NOTE_CHANGED, e.line,
+              "body %s: its moments of inertia were replaced by their mean (balanceinertia)", name.c_str());
   }
   if (changed) m->moment = turned(turn_of(axes), {{{p[0], 0, 0}, {0, p[1], 0}, {0, 0, p[2]}}});
 }
@@ -169,7 +170,7 @@ bool MjcfReader::drops_mocap(const Element& e, const std::string& c) const {
 // What stands in a body, or in a frame of it.
 void MjcfReader::read_parts(const Element& e, const Pose& frame, const std::string& c, int self,
                             Mass* from_geoms, int depth) {
-  if (depth > 200) refuse_at(RDM_ERROR_RANGE, e, "more than 200 bodies in a chain");
+  if (depth > 200) refuse_at(RDM_ERROR_RANGE, e, "there are more than 200 bodies in a chain");
   check_children(e, "body");
   for (const auto& child : e.children) {
     const Element& x = *child;
@@ -179,7 +180,7 @@ void MjcfReader::read_parts(const Element& e, const Pose& frame, const std::stri
       check_attributes(x, "frame");
       if (std::any_of(x.children.begin(), x.children.end(),
                       [](const auto& y) { return y->tag == "inertial"; }))
-        refuse_at(RDM_ERROR_FORMAT, x, "an inertial stands in a body, not in a frame");
+        refuse_at(RDM_ERROR_FORMAT, x, "an inertial must be in a body, not in a frame");
       const std::string* own = x.get("childclass");
       read_parts(x, frame * pose_at(x), own ? *own : c, self, from_geoms, depth + 1);
     } else if (x.tag == "body") {
@@ -206,7 +207,8 @@ void MjcfReader::read_parts(const Element& e, const Pose& frame, const std::stri
     } else if (x.tag == "site") {
       if (const Attribute* name = x.find("name")) {
         model.frames.push_back({name->value, self, frame * pose_at(x, c)});
-        out->note(RDM_NOTE_DROPPED, x.line, "site %s: its frame can be named in the config%s",
+        out->note(RDM_NOTE_DROPPED, x.line,
+                  "site %s: it is dropped, but options such as palm and tips can name it%s",
                   clean(name->value).c_str(), in_file(x).c_str());
         x.seen = true;
         for (const Attribute& a : x.attributes) a.read = true;
@@ -224,8 +226,9 @@ void MjcfReader::add_body(const Element& e, int parent, const Pose& frame, const
     if (flag(e, "mocap", *t)) {
       if (model.bodies.empty() || !drops_mocap(e, c))
         refuse_at(RDM_ERROR_UNSUPPORTED, e,
-                  "mocap: a body that its host moves is not read; config.root takes another");
-      out->note(RDM_NOTE_DROPPED, e.line, "body %s: its host moves it (mocap), and nothing of it touches%s",
+                  "mocap: a body that the host moves is not read; set config.root to another body");
+      out->note(RDM_NOTE_DROPPED, e.line,
+                "body %s: the host moves it (mocap), and none of its geoms collides%s",
                 clean(body.name).c_str(), in_file(e).c_str());
       for (const auto& x : e.children) {
         x->seen = true;
@@ -242,11 +245,11 @@ void MjcfReader::add_body(const Element& e, int parent, const Pose& frame, const
   const size_t self = model.bodies.size() - 1;
   const bool moving = moves(e, c);
   if (const auto all = e.all("inertial"); all.size() > 1)
-    refuse_at(RDM_ERROR_FORMAT, *all[1], "a second one, after that of line %d", all[0]->line);
+    refuse_at(RDM_ERROR_FORMAT, *all[1], "there is already one in line %d", all[0]->line);
   const Element* written = e.child("inertial");
   const Element* given = compiler.inertia_from == "true" ? nullptr : written;
   if (!given && compiler.inertia_from == "false" && compiler.least_mass == 0 && moving)
-    refuse_at(RDM_ERROR_RANGE, e, "it moves and has no inertial, and inertiafromgeom is false");
+    refuse_at(RDM_ERROR_RANGE, e, "it moves but has no inertial, and inertiafromgeom is false");
   if (given) model.bodies[self].mass = inertial(*given, model.bodies[self], moving);
   Mass from_geoms;
   read_parts(e, {}, inner, static_cast<int>(self),
@@ -262,13 +265,13 @@ void MjcfReader::add_body(const Element& e, int parent, const Pose& frame, const
     bound(e, name, &from_geoms);
     check_mass(e, "body " + name, options.mend_inertia, &from_geoms, out);
     read.mass = from_geoms;
-    out->note(RDM_NOTE_GUESSED, e.line, "body %s: mass %.4g from its shapes%s", name.c_str(), from_geoms.mass,
-              in_file(e).c_str());
+    out->note(RDM_NOTE_GUESSED, e.line, "body %s: mass %.4g kg, from its shapes%s", name.c_str(),
+              from_geoms.mass, in_file(e).c_str());
   } else if (compiler.least_mass > 0) {
     // MuJoCo puts the centre of a body without mass where its frame stands in what carries it.
     bound(e, name, &read.mass);
     read.mass = pose_at(e) * read.mass;
-    out->note(RDM_NOTE_GUESSED, e.line, "body %s: mass %.4g, the least (boundmass)%s", name.c_str(),
+    out->note(RDM_NOTE_GUESSED, e.line, "body %s: mass %.4g kg, the lower bound (boundmass)%s", name.c_str(),
               read.mass.mass, in_file(e).c_str());
   }
 }
@@ -313,7 +316,7 @@ void MjcfReader::read_worlds() {
     add_body(e, -1, t.frame, t.childclass, 0);
     const Pose X = model.bodies[0].X;
     if (norm(X.p) > 1e-9 || std::abs(X.q.w) < 1 - 1e-12)
-      out->note(RDM_NOTE_DROPPED, e.line, "body %s: where it stands in the world; its own frame is the root",
+      out->note(RDM_NOTE_DROPPED, e.line, "body %s: its position in the world; its own frame is the root",
                 clean(model.bodies[0].name).c_str());
     model.bodies[0].X = {};
   };
@@ -338,9 +341,9 @@ void MjcfReader::read_worlds() {
     refuse(RDM_ERROR_NOT_FOUND, "config.root: there is no body %s%s", clean(options.root).c_str(),
            nearest_hint(options.root, names).c_str());
   }
-  if (top.empty() && others == 0) refuse_at(RDM_ERROR_FORMAT, mujoco, "no body in the world");
+  if (top.empty() && others == 0) refuse_at(RDM_ERROR_FORMAT, mujoco, "there is no body in the world");
   if (top.empty())
-    refuse_at(RDM_ERROR_UNSUPPORTED, *first, "its host moves every body (mocap): none is a robot");
+    refuse_at(RDM_ERROR_UNSUPPORTED, *first, "the host moves every body (mocap), so none is a robot");
   if (options.root == "world") {
     add_world(*first);
     for (const Element* w : mujoco.all("worldbody")) {
@@ -351,7 +354,8 @@ void MjcfReader::read_worlds() {
   }
   if (top.size() > 1)
     refuse_at(RDM_ERROR_ARGUMENT, *top.back().body,
-              "%zu bodies stand in the world: config.root says which is taken, or \"world\"", top.size());
+              "there are %zu bodies in the world: set config.root to one of them, or to \"world\"",
+              top.size());
   add_root(top[0]);
 }
 
@@ -375,15 +379,15 @@ void MjcfReader::scale_masses() {
     whole.read_worlds();
     add(whole.model);
   }
-  if (!(sum > 0)) refuse_at(RDM_ERROR_ARGUMENT, mujoco, "settotalmass: nothing in it has mass");
+  if (!(sum > 0)) refuse_at(RDM_ERROR_ARGUMENT, mujoco, "settotalmass: nothing in the model has mass");
   const double factor = compiler.total_mass / sum;
   for (BodyIn& b : model.bodies) {
     b.mass.mass *= factor;
     for (auto& row : b.mass.moment)
       for (double& x : row) x *= factor;
   }
-  out->note(RDM_NOTE_CHANGED, mujoco.line, "all masses times %.6g: together %g kg (settotalmass)", factor,
-            compiler.total_mass);
+  out->note(RDM_NOTE_CHANGED, mujoco.line,
+            "all masses were scaled by %.6g to a total of %g kg (settotalmass)", factor, compiler.total_mass);
 }
 
 }  // namespace rdm::import

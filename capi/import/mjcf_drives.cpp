@@ -73,7 +73,8 @@ void MjcfReader::refuse_limited(const Element& spatial) const {
                                           [&](const FrameIn& f) { return f.name == site->value; });
     if (whole || here)
       refuse_at(RDM_ERROR_UNSUPPORTED, spatial,
-                "the range %s of its length would tie joints, and is not read", clean(*range).c_str());
+                "the range %s of its length would couple joints, and such ranges are not read",
+                clean(*range).c_str());
   }
 }
 
@@ -89,7 +90,7 @@ void MjcfReader::read_tendons() {
       for (const Element* j : f->all("joint")) {
         check_attributes(*j, "fixed/joint");
         const std::string *name = j->get("joint"), *coef = j->get("coef");
-        if (!name || !coef) refuse_at(RDM_ERROR_FORMAT, *j, "no joint or no coef");
+        if (!name || !coef) refuse_at(RDM_ERROR_FORMAT, *j, "it needs the attributes joint and coef");
         here = here && !elsewhere(*j, *name);
         const double c = number(*j, "coef", *coef);
         if (c != 0) o.joints.emplace_back(*name, c);
@@ -98,7 +99,7 @@ void MjcfReader::read_tendons() {
       if (!here || o.joints.empty()) continue;
       tendon_order.push_back(name ? name->value : format("line %d", f->line));
       if (!tendons.emplace(tendon_order.back(), o).second)
-        refuse_at(RDM_ERROR_ARGUMENT, *f, "it stands twice");
+        refuse_at(RDM_ERROR_ARGUMENT, *f, "it occurs twice");
     }
   }
 }
@@ -120,7 +121,7 @@ void MjcfReader::narrow(const Element& e, const std::string& joint, double one, 
   if (!(lower < upper))
     refuse_at(RDM_ERROR_RANGE, e, "its range leaves joint %s [%g, %g]", clean(joint).c_str(), lower, upper);
   if (lower - j.lower > 1e-9 || j.upper - upper > 1e-9)
-    out->note(RDM_NOTE_CHANGED, e.line, "tendon %s: joint %s goes from %g to %g%s",
+    out->note(RDM_NOTE_CHANGED, e.line, "tendon %s: it limits joint %s to %g to %g%s",
               clean(e.find("name") ? e.find("name")->value : "").c_str(), clean(joint).c_str(), lower, upper,
               in_file(e).c_str());
   j.lower = lower, j.upper = upper;
@@ -145,10 +146,10 @@ void MjcfReader::read_tendon_limits() {
     const auto& [leader, cl] = t.joints[two && !first_leads ? 1 : 0];
     const auto& [follower, cf] = t.joints[two && first_leads ? 1 : 0];
     if (!two || cl * cf > 0 || slack / std::abs(cf) > kNarrow) {
-      out->note(RDM_NOTE_DROPPED, e.line,
-                "tendon %s: its range [%g, %g] is not taken: no narrow limit of two joints that follow each "
-                "other%s",
-                clean(name).c_str(), n[0], n[1], in_file(e).c_str());
+      out->note(
+          RDM_NOTE_DROPPED, e.line,
+          "tendon %s: its range [%g, %g] is dropped: it does not make one of two joints follow the other%s",
+          clean(name).c_str(), n[0], n[1], in_file(e).c_str());
       continue;
     }
     couple_joints(e, follower, cf, leader, cl, (n[0] + n[1]) / 2, slack);
@@ -208,8 +209,8 @@ void MjcfReader::read_equalities() {
       for (const char* key : {"body1", "body2"})
         if (const auto* body = e.get(key); body && is_mocap(*body))
           refuse_at(RDM_ERROR_UNSUPPORTED, e,
-                    "%s ties a body to %s, which its host moves (mocap): it is not read; without the %s the "
-                    "robot's own joints move it",
+                    "%s ties a body to %s, which the host moves (mocap), and is not read; remove the %s, and "
+                    "the robot's own joints move the body",
                     e.tag.c_str(), clean(*body).c_str(), e.tag.c_str());
       refuse_at(RDM_ERROR_UNSUPPORTED, e, "%s %s", e.tag.c_str(), row.why);
     }
@@ -226,7 +227,8 @@ void MjcfReader::read_equality(const Element& e) {
   }
   for (size_t k = 2; k < 5; ++k)
     if (poly[k] != 0)
-      refuse_at(RDM_ERROR_UNSUPPORTED, e, "polycoef: a coupling is linear, not of power %zu", k);
+      refuse_at(RDM_ERROR_UNSUPPORTED, e, "polycoef: only linear couplings are read, not those of power %zu",
+                k);
   const std::string *one = e.get(joint ? "joint1" : "tendon1"), *two = e.get(joint ? "joint2" : "tendon2");
   if (!one) refuse_at(RDM_ERROR_FORMAT, e, "no %s1", e.tag.c_str());
   if (!joint) {
@@ -235,7 +237,7 @@ void MjcfReader::read_equality(const Element& e) {
     if (found == tendons.end() && !options.root.empty()) return;
     if (two || found == tendons.end() || found->second.joints.size() != 2)
       refuse_at(RDM_ERROR_UNSUPPORTED, e,
-                "of tendons only a fixed one of two joints is read, held at one length");
+                "only a fixed tendon of two joints that is held at one length is read");
     const auto& [a, ca] = found->second.joints[0];
     const auto& [b, cb] = found->second.joints[1];
     const double length = poly[0] + ca * joint_by[a]->turned + cb * joint_by[b]->turned;
@@ -243,11 +245,12 @@ void MjcfReader::read_equality(const Element& e) {
     return;
   }
   if (elsewhere(e, *one) || (two && elsewhere(e, *two))) {
-    out->note(RDM_NOTE_DROPPED, e.line, "equality: not all of its joints hang on config.root%s",
+    out->note(RDM_NOTE_DROPPED, e.line, "equality: not all of its joints are below config.root%s",
               in_file(e).c_str());
     return;
   }
-  if (!two || poly[1] == 0) refuse_at(RDM_ERROR_UNSUPPORTED, e, "a joint held at one place: make it fixed");
+  if (!two || poly[1] == 0)
+    refuse_at(RDM_ERROR_UNSUPPORTED, e, "it holds a joint at one position; remove the joint instead");
   // Both angles count from where the file's pose is.
   const double r1 = joint_by[*one]->turned, r2 = joint_by[*two]->turned;
   model.couplings.push_back({*one, *two, poly[1], poly[0] + r1 - poly[1] * r2, 0, &e});
@@ -356,7 +359,7 @@ void MjcfReader::read_actuator(const Element& e) {
   std::vector<std::pair<std::string, double>> parts;
   double bound_of_tendon = -1;
   if (joint) {
-    if (elsewhere(e, *joint)) return note_left_out(e, "its joint does not hang on config.root");
+    if (elsewhere(e, *joint)) return note_left_out(e, "its joint is not below config.root");
     parts = {{*joint, 1}};
   } else {
     const auto found = tendons.find(*tendon);
@@ -368,7 +371,7 @@ void MjcfReader::read_actuator(const Element& e) {
           there = there || (x->find("name") && x->find("name")->value == *tendon);
         }
       if (!there) refuse_at(RDM_ERROR_NOT_FOUND, e, "there is no tendon %s", clean(*tendon).c_str());
-      return note_left_out(e, "its tendon is none of joints that are here");
+      return note_left_out(e, "its tendon has no joints of this robot");
     }
     out->budget.spend(Cost::kSteps, 8 * found->second.joints.size());
     parts = found->second.joints;
@@ -383,7 +386,7 @@ void MjcfReader::read_actuator(const Element& e) {
   e.get("name");
   double gear = 1;
   if (const auto* t = get("gear")) gear = numbers(e, "gear", *t, 1, 6)[0];
-  if (gear == 0) refuse_at(RDM_ERROR_RANGE, e, "gear: 0");
+  if (gear == 0) refuse_at(RDM_ERROR_RANGE, e, "gear is 0");
 
   // How the length grows with the joint that leads; groups that only this tendon joins follow the first.
   std::vector<std::pair<std::string, double>> groups;  // leaders, and length per angle of each
@@ -452,7 +455,7 @@ void MjcfReader::read_actuator(const Element& e) {
       effort = std::max(std::abs(commands[0]), std::abs(commands[1])) *
                (gain && e.tag == "general" ? std::abs(numbers(e, "gainprm", *gain, 1, 10)[0]) : 1) *
                std::abs(gear);
-    out->note(RDM_NOTE_CHANGED, e.line, "%s %s: no position actuator; its effort alone is taken",
+    out->note(RDM_NOTE_CHANGED, e.line, "%s %s: it is not a position actuator; only its effort limit is used",
               e.tag.c_str(), clean(e.find("name") ? e.find("name")->value : "").c_str());
   } else {
     if (joint ? joint_by[*joint]->kp >= 0 : lead->kp >= 0)

@@ -43,14 +43,14 @@ void MjcfReader::add_geom(const Element& e, const Pose& frame, const std::string
   if (mass ? given < 0 : density < 0) refuse_at(RDM_ERROR_RANGE, e, "its mass or density is below 0");
   if (visual) {
     for (const Attribute& a : e.attributes) a.read = true;
-    out->note(RDM_NOTE_DROPPED, e.line, "geom%s: seen alone (contype and conaffinity 0)%s%s", name().c_str(),
-              mesh_name ? (" mesh " + clean(*mesh_name)).c_str() : "", in_file(e).c_str());
+    out->note(RDM_NOTE_DROPPED, e.line, "geom%s: only visual (contype and conaffinity are 0)%s%s",
+              name().c_str(), mesh_name ? (" mesh " + clean(*mesh_name)).c_str() : "", in_file(e).c_str());
     if (!counts) return;
   }
   if (kind == "plane" || kind == "hfield" || kind == "sdf") {
     if (kind != "plane" && counts)
       refuse_at(RDM_ERROR_UNSUPPORTED, e,
-                "the mass of body %s would be that of a geom of type %s: give it an inertial",
+                "the mass of body %s would come from a geom of type %s; give the body an inertial",
                 clean(body->name).c_str(), kind.c_str());
     out->note(RDM_NOTE_DROPPED, e.line, "geom%s: type %s%s", name().c_str(), clean(kind).c_str(),
               in_file(e).c_str());
@@ -62,17 +62,17 @@ void MjcfReader::add_geom(const Element& e, const Pose& frame, const std::string
   p.X = frame * pose_at(e, c);
   Mass one;  // at density 1
   if (kind == "mesh" || mesh_name) {
-    if (!mesh_name) refuse_at(RDM_ERROR_FORMAT, e, "type mesh, and no mesh");
+    if (!mesh_name) refuse_at(RDM_ERROR_FORMAT, e, "its type is mesh, but it has no attribute mesh");
     const MeshIn* mesh = mesh_in(e, *mesh_name);
     if (!mesh) {  // a note says why
       if (counts || kind != "mesh")
-        refuse_at(RDM_ERROR_NOT_FOUND, e, "the %s of body %s would be that of mesh %s, which cannot be read",
+        refuse_at(RDM_ERROR_NOT_FOUND, e, "the %s of body %s would come from mesh %s, which cannot be read",
                   counts ? "mass" : "shape", clean(body->name).c_str(), clean(*mesh_name).c_str());
       return;
     }
     const Mass& mass_of_mesh = is_shell && kind == "mesh" ? mesh->surface : mesh->mass;
     if ((counts || kind != "mesh") && !(mass_of_mesh.mass > kLeastVolume))
-      refuse_at(RDM_ERROR_RANGE, e, "mesh %s encloses nothing: no mass or size can be taken of it",
+      refuse_at(RDM_ERROR_RANGE, e, "mesh %s does not enclose a volume, so it gives no mass or size",
                 clean(*mesh_name).c_str());
     if (kind == "mesh") {
       one = p.X * mass_of_mesh;
@@ -129,12 +129,12 @@ const MeshIn* MjcfReader::mesh_of(const Element& asset, const Element& geom) {
   } else if (const auto* t = asset.get("vertex")) {
     const auto n = numbers(asset, "vertex", *t, 12, 300000);
     if (n.size() % 3)
-      refuse_at(RDM_ERROR_FORMAT, asset, "vertex: %zu numbers are no multiple of 3", n.size());
+      refuse_at(RDM_ERROR_FORMAT, asset, "vertex: %zu numbers are not a multiple of 3", n.size());
     for (size_t k = 0; k < n.size(); k += 3) mesh.points.push_back({n[k], n[k + 1], n[k + 2]});
     if (const auto* faces = asset.get("face")) {
       const auto f = numbers(asset, "face", *faces, 3, 600000);
       if (f.size() % 3)
-        refuse_at(RDM_ERROR_FORMAT, asset, "face: %zu numbers are no multiple of 3", f.size());
+        refuse_at(RDM_ERROR_FORMAT, asset, "face: %zu numbers are not a multiple of 3", f.size());
       for (size_t k = 0; k < f.size(); ++k) {
         if (!(f[k] >= 0 && f[k] < static_cast<double>(mesh.points.size())))
           refuse_at(RDM_ERROR_RANGE, asset, "face: there is no vertex %g", f[k]);
@@ -143,7 +143,7 @@ const MeshIn* MjcfReader::mesh_of(const Element& asset, const Element& geom) {
       }
     }
   } else {
-    refuse_at(RDM_ERROR_FORMAT, asset, "neither a file nor vertices");
+    refuse_at(RDM_ERROR_FORMAT, asset, "it has neither a file nor vertices");
   }
   // The reference pose is taken off, then what is left is scaled.
   Pose ref;
@@ -163,7 +163,7 @@ const MeshIn* MjcfReader::mesh_of(const Element& asset, const Element& geom) {
   const std::string* how = value(asset, "inertia", "");
   const std::string said = how ? *how : compiler.exact ? "exact" : "legacy";
   if (said != "legacy" && said != "exact" && said != "convex" && said != "shell")
-    refuse_at(RDM_ERROR_FORMAT, asset, "inertia: %s is none of legacy, exact, convex, shell",
+    refuse_at(RDM_ERROR_FORMAT, asset, "inertia: %s is not one of legacy, exact, convex, shell",
               clean(said).c_str());
   MeshIn in;
   in.hull = around(mesh.points);
@@ -228,7 +228,8 @@ Primitive MjcfReader::fitted(const Element& e, const std::string& kind, const st
     p.kind = kind == "box" ? RDM_SHAPE_BOX : RDM_SHAPE_ELLIPSOID;
     p.size = half;
   } else {
-    refuse_at(RDM_ERROR_UNSUPPORTED, e, "type %s: neither sphere, capsule, cylinder, box, ellipsoid nor mesh",
+    refuse_at(RDM_ERROR_UNSUPPORTED, e,
+              "type %s is not supported: it must be sphere, capsule, cylinder, box, ellipsoid or mesh",
               clean(kind).c_str());
   }
   p.size = scale * p.size;
@@ -244,7 +245,8 @@ Primitive MjcfReader::primitive(const Element& e, const std::string& kind, const
   const bool box = kind == "box", ellipsoid = kind == "ellipsoid", cylinder = kind == "cylinder",
              capsule = kind == "capsule";
   if (!box && !ellipsoid && !cylinder && !capsule && kind != "sphere")
-    refuse_at(RDM_ERROR_UNSUPPORTED, e, "type %s: neither sphere, capsule, cylinder, box, ellipsoid nor mesh",
+    refuse_at(RDM_ERROR_UNSUPPORTED, e,
+              "type %s is not supported: it must be sphere, capsule, cylinder, box, ellipsoid or mesh",
               clean(kind).c_str());
   const std::string* text = value(e, "size", c);
   auto n = text ? numbers(e, "size", *text, 1, 3) : std::vector<double>();
@@ -260,7 +262,7 @@ Primitive MjcfReader::primitive(const Element& e, const std::string& kind, const
   }
   const size_t needed = kind == "sphere" ? 1 : box || ellipsoid ? 3 : 2;
   if (ends && needed > 1) {
-    if (n.empty()) refuse_at(RDM_ERROR_FORMAT, e, "no size");
+    if (n.empty()) refuse_at(RDM_ERROR_FORMAT, e, "it has no size");
     if (needed == 2)
       n = {n[0], half};
     else

@@ -8,8 +8,8 @@ namespace {
 
 #define ORIENTATION "quat axisangle euler xyaxes zaxis"
 
-constexpr const char* kMadeOfMany = "it would make bodies, and is not read";
-constexpr const char* kLoop = "closes a loop of bodies: a robot is a tree";
+constexpr const char* kMadeOfMany = "it would create bodies, and is not read";
+constexpr const char* kLoop = "closes a loop of bodies, but a robot must be a tree";
 
 template <class Row>
 using Words = std::map<std::string, std::map<std::string, const Row*>>;  // by element and word
@@ -54,7 +54,7 @@ const std::vector<AttributeRow>& attribute_rows() {
        "autoreset nativeccd island multiccd override energy fwdinv invdiscrete sleep diagexact passive",
        nullptr, nullptr},
       {"flag", Use::kRefused, "constraint limit equality", "enable",
-       "the file's ranges or couplings would not hold"},
+       "the ranges or couplings of the file would have no effect"},
       {"body", Use::kRead, "name childclass pos mocap " ORIENTATION, nullptr, nullptr},
       {"body", Use::kDropped, "gravcomp sleep simple user", nullptr, nullptr},
       {"frame", Use::kRead, "childclass pos " ORIENTATION, nullptr, nullptr},
@@ -82,13 +82,13 @@ const std::vector<AttributeRow>& attribute_rows() {
       {"mesh", Use::kDropped,
        "content_type normal texcoord smoothnormal maxhullvert material params octree_maxdepth", nullptr,
        nullptr},
-      {"mesh", Use::kRefused, "builtin", "none", "a shape that MuJoCo makes is not read"},
+      {"mesh", Use::kRefused, "builtin", "none", "shapes that MuJoCo generates are not read"},
       {"fixed", Use::kRead, "name class limited range actuatorfrclimited actuatorfrcrange", nullptr, nullptr},
       {"fixed", Use::kDropped,
        "group solreflimit solimplimit solreffriction solimpfriction frictionloss springlength margin "
        "stiffness damping width material rgba user",
        nullptr, nullptr},
-      {"fixed", Use::kRefused, "armature", "0", "inertia of a tendon is not read"},
+      {"fixed", Use::kRefused, "armature", "0", "the inertia of a tendon is not read"},
       {"fixed/joint", Use::kRead, "joint coef", nullptr, nullptr},
       {"equality/joint", Use::kRead, "name class active joint1 joint2 polycoef", nullptr, nullptr},
       {"equality/joint", Use::kDropped, "solref solimp", nullptr, nullptr},
@@ -103,7 +103,7 @@ const std::vector<AttributeRow>& attribute_rows() {
        "slidersite cranksite cranklength body input velrange ffrange",
        nullptr, nullptr},
       {"actuator", Use::kRefused, "armature damping", "0",
-       "it is not read of an actuator: give it to the joint"},
+       "it is not read from an actuator; set it on the joint"},
       {"exclude", Use::kRead, "name body1 body2", nullptr, nullptr},
   };
   return rows;
@@ -122,19 +122,19 @@ const std::vector<ElementRow>& element_rows() {
       {"default", Use::kDropped, "material camera light pair", nullptr},
       {"asset", Use::kRead, "mesh", nullptr},
       {"asset", Use::kDropped, "hfield skin texture material model", nullptr},
-      {"mesh", Use::kRefused, "plugin", "a shape that a plugin makes is not read"},
+      {"mesh", Use::kRefused, "plugin", "shapes that a plugin makes are not read"},
       {"body", Use::kRead, "body frame inertial joint freejoint geom site", nullptr},
       {"body", Use::kDropped, "camera light plugin", nullptr},
       {"body", Use::kRefused, "replicate attach composite flexcomp", kMadeOfMany},
       {"deformable", Use::kDropped, "skin", nullptr},
-      {"deformable", Use::kRefused, "flex", "bodies that bend are not read"},
+      {"deformable", Use::kRefused, "flex", "deformable bodies are not read"},
       {"contact", Use::kRead, "exclude", nullptr},
       {"contact", Use::kDropped, "pair", nullptr},
       {"tendon", Use::kRead, "fixed", nullptr},
       {"tendon", Use::kDropped, "spatial", nullptr},
       {"equality", Use::kRead, "joint tendon", nullptr},
       {"equality", Use::kRefused, "connect weld distance", kLoop},
-      {"equality", Use::kRefused, "flex flexvert flexstrain", "bodies that bend are not read"},
+      {"equality", Use::kRefused, "flex flexvert flexstrain", "deformable bodies are not read"},
       {"actuator", Use::kRead, "general motor position velocity intvelocity", nullptr},
       {"actuator", Use::kDropped, "damper cylinder muscle adhesion orientation pid dcmotor plugin", nullptr},
   };
@@ -149,8 +149,7 @@ void check_attributes(const Element& e, const std::string& kind) {
     const auto found = known.find(a.name);
     if (found == known.end() && harmless(a.name)) continue;
     if (found == known.end())
-      refuse_at(RDM_ERROR_UNSUPPORTED, e,
-                "%s is no attribute that is known here, and it could change the robot%s",
+      refuse_at(RDM_ERROR_UNSUPPORTED, e, "%s is not a known attribute here, and it could change the robot%s",
                 clean(a.name).c_str(), nearest_key(a.name, known).c_str());
     const AttributeRow& row = *found->second;
     if (row.use == Use::kRefused && !(row.harmless && a.value == row.harmless))
@@ -166,10 +165,10 @@ const ElementRow& row_of(const Element& e, const std::string& parent) {
   if (found == known.end() && parent == "mujoco")
     for (const auto& [other, children] : table)
       if (children.count(e.tag))
-        refuse_at(RDM_ERROR_FORMAT, e, "it stands outside of %s: a part that other files include",
+        refuse_at(RDM_ERROR_FORMAT, e, "it is outside of %s: this file is a part that other files include",
                   other == "body" ? "worldbody" : other.c_str());
   if (found == known.end())
-    refuse_at(RDM_ERROR_UNSUPPORTED, e, "no element that is known in %s, and it could change the robot%s",
+    refuse_at(RDM_ERROR_UNSUPPORTED, e, "this is not a known element in %s, and it could change the robot%s",
               parent.c_str(), nearest_key(e.tag, known).c_str());
   return *found->second;
 }

@@ -35,7 +35,7 @@ class Namer {
   const char* give(const std::string& name, const char* otherwise, int line) {
     const char* given = quiet(name, otherwise);
     if (given != name && !name.empty())
-      out_->note(RDM_NOTE_CHANGED, line, "%s %s is called %s", what_, clean(name).c_str(), given);
+      out_->note(RDM_NOTE_CHANGED, line, "%s %s was renamed to %s", what_, clean(name).c_str(), given);
     return given;
   }
   const char* quiet(const std::string& name, const char* otherwise) {
@@ -95,7 +95,8 @@ struct Builder {
     std::map<std::string, const CouplingIn*> by;
     for (const CouplingIn& c : in.couplings) {
       if (!by.emplace(c.follower, &c).second)
-        refuse_at(RDM_ERROR_ARGUMENT, *c.element, "joint %s follows two others", clean(c.follower).c_str());
+        refuse_at(RDM_ERROR_ARGUMENT, *c.element, "joint %s follows two other joints",
+                  clean(c.follower).c_str());
     }
     std::vector<CouplingIn> all;
     for (const CouplingIn& first : in.couplings) {
@@ -122,9 +123,10 @@ struct Builder {
     for (const BodyIn& b : in.bodies)
       for (const JointIn& j : b.joints)
         if (++count > RDM_MAX_LINKS)
-          refuse_at(RDM_ERROR_RANGE, *j.element, "more than %d joints that move", RDM_MAX_LINKS);
+          refuse_at(RDM_ERROR_RANGE, *j.element, "there are more than %d joints that move", RDM_MAX_LINKS);
     if (in.couplings.size() > kMostRows)
-      refuse_at(RDM_ERROR_RANGE, *in.couplings[kMostRows].element, "more than %zu couplings", kMostRows);
+      refuse_at(RDM_ERROR_RANGE, *in.couplings[kMostRows].element, "there are more than %zu couplings",
+                kMostRows);
   }
 
   void add_links() {
@@ -155,8 +157,8 @@ struct Builder {
         l.velocity = j.velocity;
         l.friction = j.friction;
         if (j.slides && j.armature > 0)
-          out->note(RDM_NOTE_DROPPED, j.element->line, "joint %s: armature of a sliding joint",
-                    clean(j.name).c_str());
+          out->note(RDM_NOTE_DROPPED, j.element->line,
+                    "joint %s: the armature of a sliding joint was dropped", clean(j.name).c_str());
         l.armature = j.slides ? 0 : j.armature;
         const bool last = k + 1 == body.joints.size();
         const int line = body.element->line;
@@ -164,7 +166,7 @@ struct Builder {
         l.joint = names.give(j.name.empty() ? body.name + "_joint" : j.name, "joint", j.element->line);
         const auto row = static_cast<int32_t>(out->links.size());
         if (!j.name.empty() && !row_of.emplace(j.name, row).second)
-          refuse_at(RDM_ERROR_ARGUMENT, *j.element, "joint %s stands twice", clean(j.name).c_str());
+          refuse_at(RDM_ERROR_ARGUMENT, *j.element, "joint %s occurs twice", clean(j.name).c_str());
         out->links.push_back(l);
         masses.push_back({});
         joints.push_back(&j);
@@ -176,7 +178,8 @@ struct Builder {
           (at.row < 0 ? root : masses[static_cast<size_t>(at.row)]) + at.X * body.mass;
       places.emplace(body.name, at);
       if (b > 0 && body.joints.empty() && !body.name.empty())
-        out->note(RDM_NOTE_CHANGED, body.element->line, "%s is fixed: part of %s", clean(body.name).c_str(),
+        out->note(RDM_NOTE_CHANGED, body.element->line, "%s is fixed and was merged into %s",
+                  clean(body.name).c_str(),
                   at.row < 0 ? "the root" : out->links[static_cast<size_t>(at.row)].name);
       if (at.row >= 0 && !body.joints.empty())
         places.emplace(out->links[static_cast<size_t>(at.row)].name, at);
@@ -198,17 +201,18 @@ struct Builder {
       if (m.mass > 0) {
         const auto p = principal(m.moment, nullptr);
         if (!(*std::min_element(p.begin(), p.end()) > 0))
-          refuse_at(RDM_ERROR_ARGUMENT, *bodies[r]->element, "it moves, and its moments of inertia are 0");
+          refuse_at(RDM_ERROR_ARGUMENT, *bodies[r]->element, "it moves, but its moments of inertia are 0");
         continue;
       }
       const bool carries =
           std::any_of(out->links.begin(), out->links.end(),
                       [&](const rdm_robot_link& other) { return other.parent == static_cast<int32_t>(r); });
       if (!carries)
-        refuse_at(RDM_ERROR_RANGE, *bodies[r]->element, "it moves and has no mass%s", in.massless_hint);
+        refuse_at(RDM_ERROR_RANGE, *bodies[r]->element, "it moves, but has no mass%s", in.massless_hint);
     }
     if (!(root.mass > 0) && root.moment != M3{}) {  // it stands: nothing feels them
-      out->note(RDM_NOTE_DROPPED, in.bodies[0].element->line, "the root's moments of inertia, without mass");
+      out->note(RDM_NOTE_DROPPED, in.bodies[0].element->line,
+                "the root's moments of inertia were dropped, as it has no mass");
       root.moment = {};
     }
     if (root.mass > 0) {
@@ -219,7 +223,7 @@ struct Builder {
         for (auto& row : root.moment)
           for (double& x : row) x *= factor;
         out->note(RDM_NOTE_GUESSED, in.bodies[0].element->line,
-                  "the root: moments of inertia of a ball of %g m", kPointRadius);
+                  "the root: it got the moments of inertia of a ball with a radius of %g m", kPointRadius);
       }
     }
     out->def.root_mass = root.mass;
@@ -237,7 +241,7 @@ struct Builder {
       int32_t count = 0;
       for (const ShapeIn& s : in.bodies[b].shapes) {
         if (out->shapes.size() == kMostRows)
-          refuse_at(RDM_ERROR_RANGE, *s.element, "more than %zu shapes", kMostRows);
+          refuse_at(RDM_ERROR_RANGE, *s.element, "there are more than %zu shapes", kMostRows);
         rdm_robot_shape o{};
         const Place& at = of_body[b];
         const Pose X = at.X * s.shape.X;
@@ -273,7 +277,7 @@ struct Builder {
       o.ratio = c.ratio;
       o.slack = c.slack;
       if (c.offset != 0)
-        out->note(RDM_NOTE_CHANGED, c.element->line, "joint %s: its 0 is moved by %g",
+        out->note(RDM_NOTE_CHANGED, c.element->line, "joint %s: its zero was moved by %g",
                   clean(c.follower).c_str(), c.offset);
       out->couplings.push_back(o);
     }
@@ -300,7 +304,7 @@ struct Builder {
           if (c.link == static_cast<int32_t>(r) && joints[static_cast<size_t>(c.other)]->effort > 0) {
             l.effort = joints[static_cast<size_t>(c.other)]->effort;
             out->note(RDM_NOTE_GUESSED, j.element->line,
-                      "joint %s: effort %.4g, as the joint has that leads it", l.joint, l.effort);
+                      "joint %s: effort %.4g, that of the joint that it follows", l.joint, l.effort);
           }
       if (!(l.effort > 0)) {  // twice the weight of what it carries at arm's length
         double load = 0;
@@ -309,15 +313,16 @@ struct Builder {
             load += out->links[k].mass * kGravity *
                     (j.slides ? 1 : norm(poses[k] * vec(out->links[k].com) - poses[r].p));
         l.effort = std::max(2 * load, 0.1);
-        out->note(RDM_NOTE_GUESSED, j.element->line, "joint %s: effort %.4g, twice what holds its weight",
-                  l.joint, l.effort);
+        out->note(RDM_NOTE_GUESSED, j.element->line,
+                  "joint %s: effort %.4g, twice what holds the weight it carries", l.joint, l.effort);
       }
       const double reach = j.slides ? kReachSlide : kReachAngle;
       l.kp = j.kp >= 0 ? j.kp : std::min(l.effort / reach, kMostGain);
       const double damping = std::min(j.damping, std::max(kMostGain - std::max(j.kd, 0.0), 0.0));
       if (damping < j.damping)
-        out->note(RDM_NOTE_CHANGED, j.element->line, "joint %s: damping %g is %g, the most that a joint has",
-                  l.joint, j.damping, damping);
+        out->note(RDM_NOTE_CHANGED, j.element->line,
+                  "joint %s: damping %g was reduced to %g, the largest that is allowed", l.joint, j.damping,
+                  damping);
       l.kd = std::max(j.kd, 0.0) + damping;
       if (j.damping_ratio > 0) l.kd += j.damping_ratio * 2 * std::sqrt(l.kp * felt_as_drawn[r]);
       if (j.kp < 0 || l.kd == 0) l.kd = std::max(l.kd, 2 * std::sqrt(l.kp * felt[r]));
@@ -334,8 +339,9 @@ struct Builder {
     if (!j.has_command || follows(row)) return;
     const double low = std::max(j.command_low, l.lower), high = std::min(j.command_high, l.upper);
     if (!(low < high))
-      refuse_at(RDM_ERROR_RANGE, *j.element, "its actuator's range [%g, %g] is not in the joint's [%g, %g]",
-                j.command_low, j.command_high, l.lower, l.upper);
+      refuse_at(RDM_ERROR_RANGE, *j.element,
+                "its actuator's range [%g, %g] is not within the joint's [%g, %g]", j.command_low,
+                j.command_high, l.lower, l.upper);
     if (low - l.lower < 1e-6 && l.upper - high < 1e-6) return;
     rdm_robot_curve c{};
     c.link = c.driver = row;
@@ -381,10 +387,11 @@ struct Builder {
       return link < 0 ? "root" : out->links[static_cast<size_t>(link)].name;
     };
     for (const auto& [pair, count] : overlapping)
-      out->note(RDM_NOTE_CHANGED, 0, "%s and %s overlap at home: %d pair%s of shapes may not touch",
+      out->note(RDM_NOTE_CHANGED, 0, "%s and %s overlap in the home pose: %d pair%s of shapes cannot collide",
                 name(pair.first), name(pair.second), count, count == 1 ? "" : "s");
     if (left_out)
-      out->note(RDM_NOTE_CHANGED, 0, "%zu pairs of shapes beyond %zu may not touch", left_out, kMostRows);
+      out->note(RDM_NOTE_CHANGED, 0, "%zu pairs of shapes beyond the limit of %zu cannot collide", left_out,
+                kMostRows);
   }
   size_t left_out = 0;
 
@@ -414,12 +421,12 @@ void check_mass(const Element& e, const std::string& what, bool mend, Mass* m, D
   if (positive && triangle) return;
   if (!mend)
     refuse_at(RDM_ERROR_ARGUMENT, e, "%s: the principal moments of inertia %g, %g, %g %s", what.c_str(), p[0],
-              p[1], p[2], positive ? "break the triangle rule" : "are not all above 0");
+              p[1], p[2], positive ? "violate the triangle inequality" : "are not all above 0");
   if (!(most > 0)) refuse_at(RDM_ERROR_ARGUMENT, e, "%s: no moment of inertia is above 0", what.c_str());
   for (size_t k = 0; k < 3; ++k) m->moment[k][k] += lacks;
   out->note(RDM_NOTE_CHANGED, e.line,
-            "%s: principal moments %g, %g, %g break the triangle rule: %g was added to each", what.c_str(),
-            p[0], p[1], p[2], lacks);
+            "%s: principal moments %g, %g, %g violate the triangle inequality: %g was added to each",
+            what.c_str(), p[0], p[1], p[2], lacks);
 }
 
 Primitive primitive_of(const rdm_robot_shape& s) {
@@ -492,10 +499,10 @@ void build(const Model& model, const Options& options, Draft* out) {
   const std::string name = fitting_name(options.name.empty() ? model.name : options.name, "robot");
   if (!options.name.empty() && name != options.name)
     refuse(RDM_ERROR_ARGUMENT,
-           "config.name: %s: a name is made of at most %zu letters, digits, '_', '-' and '+'",
+           "config.name: %s: a name may have at most %zu letters, digits, '_', '-' and '+'",
            clean(options.name).c_str(), kLongestName);
   if (options.name.empty() && name != model.name)
-    out->note(RDM_NOTE_CHANGED, model.bodies[0].element->line, "the robot %s is called %s",
+    out->note(RDM_NOTE_CHANGED, model.bodies[0].element->line, "the robot %s was renamed to %s",
               clean(model.name).c_str(), name.c_str());
   out->def.name = out->keep(name);
   give_roles(b.places, options, out);

@@ -56,7 +56,7 @@ struct Writer {
     const char* kind = nullptr;
     for (const NamedKind& k : kShapes)
       if (k.kind == s.kind && s.kind != RDM_SHAPE_PLANE) kind = k.name;
-    if (!kind) refuse(RDM_ERROR_RANGE, "def.shapes[%d]: kind %d is none of an object", i, s.kind);
+    if (!kind) refuse(RDM_ERROR_RANGE, "def.shapes[%d]: kind %d cannot be part of an object", i, s.kind);
     out += "\n[[shape]]\n";
     text("kind", kind);
     if (s.kind == RDM_SHAPE_HULL) {
@@ -95,7 +95,7 @@ struct ObjectReader {
       const toml::node& n = t.need("points");
       const toml::array* rows = n.as_array();
       if (!rows || rows->size() < 4 || rows->size() > 32)
-        t.bad(RDM_ERROR_FORMAT, line_of(n), "points is no list of 4 to 32 points");
+        t.bad(RDM_ERROR_FORMAT, line_of(n), "points is not a list of 4 to 32 points");
       std::vector<double>& points = out->points.emplace_back();
       for (const toml::node& row : *rows)
         for (const double x : t.list(row, "a point", 3, 3)) points.push_back(x);
@@ -113,7 +113,8 @@ struct ObjectReader {
     top.only({"format", "name", "alias", "summary", "material", "friction", "mass", "moment", "shape"});
     if (const toml::node* n = file.get("format"))
       if (!n->is_integer() || n->as_integer()->get() != kFormat)
-        top.bad(RDM_ERROR_VERSION_MISMATCH, line_of(*n), "format: this library reads %d", kFormat);
+        top.bad(RDM_ERROR_VERSION_MISMATCH, line_of(*n), "format: this library reads format %d only",
+                kFormat);
     rdm_object_def& d = out->def;
     const auto text = [&](const char* key) -> const char* {
       const toml::node* n = file.get(key);
@@ -128,7 +129,7 @@ struct ObjectReader {
     d.mass = top.as_number(top.need("mass"), "mass");
     top.numbers("moment", d.moment, 6);
     for (const Table& t : top.rows("shape")) shape(t);
-    if (out->shapes.empty()) top.bad(RDM_ERROR_FORMAT, 1, "no [[shape]]");
+    if (out->shapes.empty()) top.bad(RDM_ERROR_FORMAT, 1, "there is no [[shape]]");
     out->bind();
   }
 };

@@ -75,12 +75,12 @@ struct Writer {
   std::string link(int32_t row, const char* what) const {
     if (row == RDM_LINK_ROOT) return quoted(kRoot);
     if (row < 0 || row >= d.num_links)
-      refuse(RDM_ERROR_ARGUMENT, "def: %s: row %d of links is not there", what, row);
+      refuse(RDM_ERROR_ARGUMENT, "def: %s: there is no row %d of links", what, row);
     return quoted(d.links[row].name);
   }
   std::string shape(int32_t row) const {
     if (row < 0 || row >= d.num_shapes)
-      refuse(RDM_ERROR_ARGUMENT, "def.pairs: row %d of shapes is not there", row);
+      refuse(RDM_ERROR_ARGUMENT, "def.pairs: there is no row %d of shapes", row);
     return quoted(d.shapes[row].name);
   }
 
@@ -106,17 +106,18 @@ struct Writer {
       if (!l.name || !l.joint) refuse(RDM_ERROR_ARGUMENT, "def.links: row %d has no name", i);
       if (l.kind < 0 || l.kind > 1)
         refuse(RDM_ERROR_RANGE, "def.links: kind %d of %s is outside [0, 1]", l.kind, clean(l.name).c_str());
-      if (same_name(l.name, kRoot)) refuse(RDM_ERROR_ARGUMENT, "def.links: row %d is called root", i);
+      if (same_name(l.name, kRoot))
+        refuse(RDM_ERROR_ARGUMENT, "def.links: row %d has the name root, which is reserved", i);
       for (int32_t k = 0; k < i; ++k)
         if (same_name(d.links[k].name, l.name))
-          refuse(RDM_ERROR_ARGUMENT, "def.links: %s stands twice", clean(l.name).c_str());
+          refuse(RDM_ERROR_ARGUMENT, "def.links: %s occurs twice", clean(l.name).c_str());
     }
     for (int32_t i = 0; i < d.num_shapes; ++i) {
       if (!d.shapes[i].name) refuse(RDM_ERROR_ARGUMENT, "def.shapes: row %d has no name", i);
       if (d.num_pairs > 0)
         for (int32_t k = 0; k < i; ++k)
           if (same_name(d.shapes[k].name, d.shapes[i].name))
-            refuse(RDM_ERROR_ARGUMENT, "def.shapes: %s stands twice", clean(d.shapes[i].name).c_str());
+            refuse(RDM_ERROR_ARGUMENT, "def.shapes: %s occurs twice", clean(d.shapes[i].name).c_str());
     }
     for (int32_t i = 0; i < d.num_fingers; ++i)
       if (!d.fingers[i].name) refuse(RDM_ERROR_ARGUMENT, "def.fingers: row %d has no name", i);
@@ -248,7 +249,8 @@ struct Writer {
     for (int32_t k = 0; k < kRobotShapes; ++k)
       if (kShapes[k].kind == s.kind) kind = kShapes[k].name;
     if (!kind)
-      refuse(RDM_ERROR_RANGE, "def.shapes: kind %d of %s is none of a robot", s.kind, clean(s.name).c_str());
+      refuse(RDM_ERROR_RANGE, "def.shapes: kind %d of %s cannot be part of a robot", s.kind,
+             clean(s.name).c_str());
     line("kind", quoted(kind));
     numbers("size", s.size, 3);
     numbers("p", s.pose.p, 3);
@@ -284,7 +286,7 @@ struct RobotReader {
       t.only({"name", "joint", "parent", "kind", "p", "q", "axis", "range", "velocity", "kp", "kd", "effort",
               "armature", "friction", "mass", "com", "moment"});
       if (out->links.size() == RDM_MAX_LINKS)
-        t.bad(RDM_ERROR_RANGE, line_of(t.t), "more than %d links", RDM_MAX_LINKS);
+        t.bad(RDM_ERROR_RANGE, line_of(t.t), "there are more than %d links", RDM_MAX_LINKS);
       rdm_robot_link l{};
       l.name = name(t, "name");
       l.joint = name(t, "joint");
@@ -308,7 +310,7 @@ struct RobotReader {
       t.numbers("moment", l.moment, 6);
       out->links.push_back(l);
     }
-    if (out->links.empty()) top.bad(RDM_ERROR_FORMAT, line_of(top.t), "no [[link]]");
+    if (out->links.empty()) top.bad(RDM_ERROR_FORMAT, line_of(top.t), "there is no [[link]]");
   }
   void read_shapes() {
     for (const Table& t : top.rows("shape")) {
@@ -350,7 +352,7 @@ struct RobotReader {
               "pairs is neither \"all\" nor a list of at most 4096 pairs of shapes");
     for (const toml::node& x : *a) {
       const toml::array* pair = x.as_array();
-      if (!pair || pair->size() != 2) top.bad(RDM_ERROR_FORMAT, line_of(x), "pairs: not two shapes");
+      if (!pair || pair->size() != 2) top.bad(RDM_ERROR_FORMAT, line_of(x), "pairs: a row is not two shapes");
       out->pairs.push_back({shape(*pair->get(0)), shape(*pair->get(1))});
     }
   }
@@ -442,7 +444,8 @@ struct RobotReader {
     top.only(known);
     if (const toml::node* n = top.find("format"))
       if (!n->is_integer() || n->as_integer()->get() != kFormat)
-        top.bad(RDM_ERROR_VERSION_MISMATCH, line_of(*n), "format: this library reads %d", kFormat);
+        top.bad(RDM_ERROR_VERSION_MISMATCH, line_of(*n), "format: this library reads format %d only",
+                kFormat);
     rdm_robot_def& d = out->def;
     d.name = options.name.empty() ? name(top, "name") : out->keep(options.name);
     if (const toml::node* n = top.find("alias")) {
@@ -450,7 +453,7 @@ struct RobotReader {
       if (options.name.empty())
         d.alias = alias;
       else
-        out->note(RDM_NOTE_DROPPED, line_of(*n), "alias %s: another name of what is now %s",
+        out->note(RDM_NOTE_DROPPED, line_of(*n), "alias %s was dropped: the robot is now called %s",
                   clean(alias).c_str(), clean(options.name).c_str());
     }
     if (top.find("summary")) d.summary = name(top, "summary");

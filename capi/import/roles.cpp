@@ -60,7 +60,7 @@ struct Guess {
     const bool arm = ends.size() == 1 || stem >= kLongStem;
     const int32_t k = hand ? RDM_ROBOT_HAND : arm ? RDM_ROBOT_ARM : RDM_ROBOT_HAND;
     if (!hand)
-      out->note(RDM_NOTE_GUESSED, 0, "%s: %zu chain%s behind a stem of %d joints",
+      out->note(RDM_NOTE_GUESSED, 0, "%s: %zu chain%s after a common chain of %d joints",
                 k == RDM_ROBOT_ARM ? "an arm" : "a hand", ends.size(), ends.size() == 1 ? "" : "s", stem);
     return k;
   }
@@ -257,7 +257,7 @@ struct Guess {
           std::any_of(taken.begin(), taken.end(), [&](const std::string& t) { return same_name(t, f.name); }))
         f.name = "finger" + std::to_string(i + 1);
       taken.push_back(f.name);
-      out->note(RDM_NOTE_GUESSED, 0, "finger %s%s: %s to %s, its end at %.4g %.4g %.4g", f.name.c_str(),
+      out->note(RDM_NOTE_GUESSED, 0, "finger %s%s: from %s to %s, its tip at %.4g %.4g %.4g", f.name.c_str(),
                 f.thumb ? ", the thumb" : "", name(f.first), name(f.tip), f.p_tip.x, f.p_tip.y, f.p_tip.z);
     }
   }
@@ -331,9 +331,10 @@ struct Guess {
     d.mirror = std::abs(a.x) >= std::abs(a.y) && std::abs(a.x) >= std::abs(a.z) ? 0
                : std::abs(a.y) >= std::abs(a.z)                                 ? 1
                                                                                 : 2;
-    out->note(RDM_NOTE_GUESSED, 0,
-              "palm: %s, normal %.3g %.3g %.3g, fingers %.3g %.3g %.3g; a left one is mirrored in %c",
-              name(d.palm_link), n.x, n.y, n.z, z.x, z.y, z.z, "xyz"[d.mirror]);
+    out->note(
+        RDM_NOTE_GUESSED, 0,
+        "palm: %s, its normal %.3g %.3g %.3g, fingers towards %.3g %.3g %.3g; a left hand is mirrored in %c",
+        name(d.palm_link), n.x, n.y, n.z, z.x, z.y, z.z, "xyz"[d.mirror]);
     give_fingers(normal);
     give_poses(normal);
   }
@@ -356,7 +357,8 @@ struct Guess {
       } else {
         const Place& at = place("mount", options.mount);
         if (at.row >= 0)
-          refuse(RDM_ERROR_ARGUMENT, "config.mount: %s moves against the root", clean(options.mount).c_str());
+          refuse(RDM_ERROR_ARGUMENT, "config.mount: %s moves relative to the root",
+                 clean(options.mount).c_str());
         X = at.X;
       }
     } else {
@@ -366,8 +368,8 @@ struct Guess {
       V3 straight;
       straight[axis] = way[axis] < 0 ? -1 : 1;
       X.q = turn_between({0, 0, 1}, straight);
-      out->note(RDM_NOTE_GUESSED, 0, "mount: the root's origin, z along its %s%c", way[axis] < 0 ? "-" : "",
-                "xyz"[axis]);
+      out->note(RDM_NOTE_GUESSED, 0, "mount: the origin of the root, z along its %s%c axis",
+                way[axis] < 0 ? "-" : "", "xyz"[axis]);
     }
     put(X.p, d.mount.p);
     put(X.q, d.mount.q);
@@ -440,7 +442,7 @@ struct Guess {
       out->closed.push_back(
           static_cast<float>(std::clamp(2 * (closed[k] - low) / (high - low) - 1, -1.0, 1.0)));
     }
-    out->note(RDM_NOTE_GUESSED, 0, "poses folded and closed: bent half way, the thumb across");
+    out->note(RDM_NOTE_GUESSED, 0, "poses folded and closed: joints half bent, the thumb across the palm");
   }
 
   void give() {

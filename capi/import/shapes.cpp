@@ -124,7 +124,8 @@ class LineReader {
       at = stop + (bytes_.compare(stop, 2, "\r\n") == 0 ? 2 : 1);
     }
     if (!obj && mesh.points.size() % 3 != 0)
-      refuse(RDM_ERROR_FORMAT, "it ends in a facet: %zu corners are not three for each", mesh.points.size());
+      refuse(RDM_ERROR_FORMAT, "it ends within a facet: %zu corners are not a multiple of three",
+             mesh.points.size());
   }
   Mesh mesh;
 
@@ -147,7 +148,8 @@ class LineReader {
   void corner(const char* c, const char* end) {
     V3 p;
     for (int k = 0; k < 3; ++k) p[k] = lines_number(c, end, line_);
-    if (mesh.points.size() == kMostPoints) refuse(RDM_ERROR_RANGE, "more than %zu corners", kMostPoints);
+    if (mesh.points.size() == kMostPoints)
+      refuse(RDM_ERROR_RANGE, "it has more than %zu corners", kMostPoints);
     mesh.points.push_back(p);
     const auto n = static_cast<uint32_t>(mesh.points.size());
     if (!obj_ && n % 3 == 0) mesh.faces.push_back({n - 3, n - 2, n - 1});
@@ -162,11 +164,12 @@ class LineReader {
       const auto points = static_cast<long long>(mesh.points.size());
       i = i < 0 ? points + i : i - 1;
       if (i < 0 || i >= points)
-        refuse(RDM_ERROR_FORMAT, "line %zu: a face of a corner that is not there", line_);
+        refuse(RDM_ERROR_FORMAT, "line %zu: a face names a corner that does not exist", line_);
       const auto corner = static_cast<uint32_t>(i);
       if (count == 0) first = corner;
       if (count >= 2) {
-        if (mesh.faces.size() == kMostPoints) refuse(RDM_ERROR_RANGE, "more than %zu faces", kMostPoints);
+        if (mesh.faces.size() == kMostPoints)
+          refuse(RDM_ERROR_RANGE, "it has more than %zu faces", kMostPoints);
         mesh.faces.push_back({first, before, corner});
       }
       before = corner;
@@ -286,11 +289,11 @@ Mesh parse_mesh(std::string bytes, bool obj) {
     out = LineReader(std::move(bytes), obj).mesh;
   } else {
     if (bytes.size() != expected)
-      refuse(RDM_ERROR_FORMAT, "its header says %u facets, %zu bytes; it has %zu", facets, expected,
-             bytes.size());
+      refuse(RDM_ERROR_FORMAT, "its header says %u facets, which are %zu bytes, but it has %zu bytes", facets,
+             expected, bytes.size());
     if (facets == 0) refuse(RDM_ERROR_FORMAT, "its header says 0 facets");
     if (3 * static_cast<size_t>(facets) > kMostPoints)
-      refuse(RDM_ERROR_RANGE, "more than %zu corners", kMostPoints);
+      refuse(RDM_ERROR_RANGE, "it has more than %zu corners", kMostPoints);
     for (uint32_t f = 0; f < facets; ++f) {
       float n[12];  // normal, then three corners
       std::memcpy(n, bytes.data() + kStlHeader + kStlFacet * static_cast<size_t>(f), sizeof n);
@@ -301,7 +304,7 @@ Mesh parse_mesh(std::string bytes, bool obj) {
       out.faces.push_back({3 * f, 3 * f + 1, 3 * f + 2});
     }
   }
-  if (out.points.empty()) refuse(RDM_ERROR_FORMAT, "no corners in it");
+  if (out.points.empty()) refuse(RDM_ERROR_FORMAT, "it has no corners");
   return out;
 }
 
@@ -309,7 +312,7 @@ Mesh read_mesh(const std::string& path, Budget* budget) {
   std::string ending = path.substr(std::min(path.rfind('.'), path.size()));
   for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   if (ending != ".stl" && ending != ".obj")
-    refuse(RDM_ERROR_UNSUPPORTED, "%s: meshes are read from .stl and .obj", clean(path, 160).c_str());
+    refuse(RDM_ERROR_UNSUPPORTED, "%s: only .stl and .obj files are read", clean(path, 160).c_str());
   budget->spend(Cost::kFiles, 1);
   std::string bytes = read_file(path, std::min(kMostMeshBytes, budget->left(Cost::kMeshBytes)));
   budget->spend(Cost::kMeshBytes, bytes.size());

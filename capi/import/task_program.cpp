@@ -519,7 +519,7 @@ rdm_result program_check_state(void*, const void* instance, const void* state) {
   for (const auto& start : s.start)
     for (const double x : start) all = all && good(x);
   for (const double x : s.last) all = all && good(x);
-  return all ? RDM_OK : rdm_fail(RDM_ERROR_FORMAT, "a number is not finite, or beyond what a world can have");
+  return all ? RDM_OK : rdm_fail(RDM_ERROR_FORMAT, "a number is not finite, or larger than a world allows");
 }
 
 }  // namespace rdm::import

@@ -52,8 +52,9 @@ const TermRow& term_of(const Table& t, bool many) {
     names.emplace_back(row.name);
   }
   for (const TermRow& row : kTerms)
-    if (name == row.name) t.bad(RDM_ERROR_FORMAT, line_of(n), "term: %s is several numbers", row.name);
-  t.bad(RDM_ERROR_FORMAT, line_of(n), "term: %s is not known%s", clean(name).c_str(),
+    if (name == row.name)
+      t.bad(RDM_ERROR_FORMAT, line_of(n), "term: %s gives several numbers, but one is needed", row.name);
+  t.bad(RDM_ERROR_FORMAT, line_of(n), "term: %s is unknown%s", clean(name).c_str(),
         nearest_hint(name, names).c_str());
 }
 

@@ -15,7 +15,8 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 void PlayerText::read_players() {
   for (size_t i = 0; i < parts_.size(); ++i) add_player(i);
-  if (p_.num_actions == 0) top_.bad(RDM_ERROR_FORMAT, 1, "nothing is moved by actions: a [[robot]] is");
+  if (p_.num_actions == 0)
+    top_.bad(RDM_ERROR_FORMAT, 1, "nothing is moved by actions; add a [[robot]] with a control");
   check(top_, 1, rdm_scene_set_actions(scene_, hold_.size(), hold_.data(), hold_.data()));
   for (const Table& t : top_.rows("draw")) add_factor(t);
 }
@@ -53,7 +54,7 @@ void PlayerText::add_player(size_t index) {
   player.joints = joints;
   num_joints_ += joints;
   if (num_joints_ > kMostTaskJoints)
-    t.bad(RDM_ERROR_RANGE, line_of(t.t), "more than %d joints in all", kMostTaskJoints);
+    t.bad(RDM_ERROR_RANGE, line_of(t.t), "there are more than %d joints in all", kMostTaskJoints);
   // where the joints begin
   Span* start = p_.start + player.joint;
   for (int32_t i = 0; i < joints; ++i) {
@@ -61,7 +62,7 @@ void PlayerText::add_player(size_t index) {
     double q = std::clamp(0.0, d.links[at].lower, d.links[at].upper);
     if (at < d.home.size()) q = d.home[at];
     if (const toml::node* n = t.find("start"); n && n->is_string() && n->as_string()->get() == "folded") {
-      if (d.folded.empty()) t.bad(RDM_ERROR_FORMAT, line_of(*n), "start: it has no folded pose");
+      if (d.folded.empty()) t.bad(RDM_ERROR_FORMAT, line_of(*n), "start: the robot has no folded pose");
       q = d.folded[at];
     }
     if (at < part.start.size()) q = part.start[at];
@@ -104,7 +105,7 @@ void PlayerText::add_player(size_t index) {
   player.compensated = t.flag("compensate");
   player.push_action = -1;
   if (const toml::node* n = t.find("push")) {
-    if (!t.flag("free_base")) t.bad(RDM_ERROR_FORMAT, line_of(*n), "push goes with free_base = true");
+    if (!t.flag("free_base")) t.bad(RDM_ERROR_FORMAT, line_of(*n), "push needs free_base = true");
     t.numbers("push", player.push, 2);
     player.push_action = p_.num_actions;
     add_actions(t, 6, 0);
@@ -114,7 +115,7 @@ void PlayerText::add_player(size_t index) {
 void PlayerText::add_actions(const Table& t, int32_t count, float hold) {
   p_.num_actions += count;
   if (p_.num_actions > kMostTaskActions)
-    t.bad(RDM_ERROR_RANGE, line_of(t.t), "more than %d actions in all", kMostTaskActions);
+    t.bad(RDM_ERROR_RANGE, line_of(t.t), "there are more than %d actions in all", kMostTaskActions);
   hold_.insert(hold_.end(), static_cast<size_t>(count), hold);
 }
 
@@ -141,7 +142,7 @@ void PlayerText::controls(const Part& part, bool robot, Player* player) {
     check(t, line_of(t.t), rdm_scene_joint_at(scene_, j, &info));
     if (info.action < 0) continue;
     if (player->command + info.action >= kMostTaskActions)
-      t.bad(RDM_ERROR_RANGE, line_of(t.t), "more than %d commands in all", kMostTaskActions);
+      t.bad(RDM_ERROR_RANGE, line_of(t.t), "there are more than %d commands in all", kMostTaskActions);
     Command& c = p_.commands[player->command + info.action];
     c.joint = j;
     c.lower = info.lower, c.upper = info.upper;
@@ -172,7 +173,8 @@ void PlayerText::controls(const Part& part, bool robot, Player* player) {
     add_actions(t, 1, player->control == Control::kPosition ? static_cast<float>(command_at(c, q)) : 0.0f);
   }
   if (t.find("drive") && player->actions == 0)
-    t.bad(RDM_ERROR_NOT_FOUND, line_of(*t.find("drive")), "drive: no joint that has a command is named so%s",
+    t.bad(RDM_ERROR_NOT_FOUND, line_of(*t.find("drive")),
+          "drive: there is no joint with a command of this name%s",
           nearest_hint(drive[0], joint_names_).c_str());
 }
 

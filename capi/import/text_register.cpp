@@ -21,7 +21,7 @@ class Registration {
                "camera", "observe", "reward", "cost", "success", "fall", "end"});
     rdm_task_def d;
     rdm_task_def_init(&d, sizeof d);
-    if (!top_.find("task")) top_.bad(RDM_ERROR_FORMAT, 1, "no [task]");
+    if (!top_.find("task")) top_.bad(RDM_ERROR_FORMAT, 1, "there is no [task]");
     const Table t = top_.section("task");
     t.only({"name", "summary", "max_steps", "obs_limit", "gravity"});
     d.name = task_.keep(t.as_text(t.need("name"), "name"));
@@ -63,7 +63,7 @@ class Registration {
       // one entry until build says how many; equal bounds are none
       task_.fields.push_back({task_.keep(field_name(t)), task_.keep(unit), 1, 0, 0, 0});
     }
-    if (task_.fields.empty()) top_.bad(RDM_ERROR_FORMAT, 1, "no [[observe]]");
+    if (task_.fields.empty()) top_.bad(RDM_ERROR_FORMAT, 1, "there is no [[observe]]");
   }
   void costs() {
     for (const Table& t : top_.rows("cost")) {
@@ -74,14 +74,14 @@ class Registration {
       const auto there = std::find_if(task_.costs.begin(), task_.costs.end(), same);
       if (there == task_.costs.end()) {
         if (task_.costs.size() == RDM_MAX_COSTS)
-          t.bad(RDM_ERROR_RANGE, line_of(t.t), "more than %d costs", RDM_MAX_COSTS);
+          t.bad(RDM_ERROR_RANGE, line_of(t.t), "there are more than %d costs", RDM_MAX_COSTS);
         task_.stands("costs", task_.costs.size(), line_of(t.t), t.what);
         task_.costs.push_back({name, task_.keep(t.text("help", term_of(t, false).name)), limit});
       } else if (t.find("limit") || t.find("help")) {
-        t.bad(RDM_ERROR_FORMAT, line_of(t.t), "limit, help: the first row of a cost has them");
+        t.bad(RDM_ERROR_FORMAT, line_of(t.t), "limit and help: only the first row of a cost may have them");
       }
     }
-    if (task_.costs.empty()) top_.bad(RDM_ERROR_FORMAT, 1, "no [[cost]]");
+    if (task_.costs.empty()) top_.bad(RDM_ERROR_FORMAT, 1, "there is no [[cost]]");
   }
   void options() {
     const Table all = top_.section("options");
@@ -103,7 +103,7 @@ class Registration {
   void own_option(const Table& t, rdm_option_def* o) {
     t.only({"default", "low", "high", "help", "integer", "range", "choices"});
     const toml::node& n = t.need("default");  // its type is the option's kind
-    o->help = task_.keep(t.text("help", "of the task's file"));
+    o->help = task_.keep(t.text("help", "option of the task's file"));
     if (n.is_boolean()) {
       o->kind = RDM_KIND_FLAG;
       o->number = n.as_boolean()->get() ? 1 : 0;
@@ -113,7 +113,8 @@ class Registration {
       o->text = task_.keep(t.as_text(n, "default"));
       if (const toml::node* c = t.find("choices")) {
         const toml::array* words = c->as_array();
-        if (!words || words->empty()) t.bad(RDM_ERROR_FORMAT, line_of(*c), "choices is no list of texts");
+        if (!words || words->empty())
+          t.bad(RDM_ERROR_FORMAT, line_of(*c), "choices is not a list of strings");
         std::string joined;
         for (const toml::node& word : *words)
           joined += (joined.empty() ? "" : "|") + t.as_text(word, "choices");
@@ -138,7 +139,7 @@ class Registration {
     }
     if (!row)
       t.bad(RDM_ERROR_NOT_FOUND, line_of(value),
-            "it is none that every task has%s; one of your own is { default = , low = , high = , help = }",
+            "no task has an option of this name%s; write your own as { default = , low = , high = , help = }",
             nearest_hint(o->key, names).c_str());
     o->kind = static_cast<int32_t>(row->kind);
     if (row->kind == OptionKind::kText)

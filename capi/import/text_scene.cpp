@@ -60,7 +60,7 @@ Span SceneText::span(const Table& t, const toml::node& n, const char* key) const
     };
     if (dots == std::string::npos || !read(0, dots, &s.low) || !read(dots + 2, text.size(), &s.high) ||
         !(s.low <= s.high))
-      t.bad(RDM_ERROR_FORMAT, line_of(n), "%s: %s is no range \"a..b\" with a <= b", key,
+      t.bad(RDM_ERROR_FORMAT, line_of(n), "%s: %s is not a range \"a..b\" with a <= b", key,
             clean(text).c_str());
     return s;
   }
@@ -73,7 +73,7 @@ bool SceneText::spans(const Table& t, const char* key, Span* out, size_t count) 
   if (!n) return false;
   const toml::array* a = n->as_array();
   if (!a || a->size() != count)
-    t.bad(RDM_ERROR_FORMAT, line_of(*n), "%s is no list of %zu numbers", key, count);
+    t.bad(RDM_ERROR_FORMAT, line_of(*n), "%s is not a list of %zu numbers", key, count);
   for (size_t k = 0; k < count; ++k) out[k] = span(t, *a->get(k), key);
   return true;
 }
@@ -88,11 +88,11 @@ void SceneText::middle(const Span* s, size_t count, double* out) {
 
 void SceneText::read_turn(const Table& t, double q[4]) const {
   const toml::node *given = t.find("q"), *rpy = t.find("rpy");
-  if (given && rpy) t.bad(RDM_ERROR_FORMAT, line_of(*rpy), "q and rpy are both there");
+  if (given && rpy) t.bad(RDM_ERROR_FORMAT, line_of(*rpy), "it has both q and rpy; give one of them");
   if (given) {
     t.numbers("q", q, 4);
     const double n = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-    if (!(n > 1e-9 && n < 1e9)) t.bad(RDM_ERROR_RANGE, line_of(*given), "q is no rotation");
+    if (!(n > 1e-9 && n < 1e9)) t.bad(RDM_ERROR_RANGE, line_of(*given), "q is not a rotation");
     for (int k = 0; k < 4; ++k) q[k] /= n;
   } else if (rpy) {
     const auto angles = t.list(*rpy, "rpy", 3, 3);
@@ -141,7 +141,8 @@ std::vector<std::string> SceneText::texts(const Table& t, const char* key, size_
   else
     out.push_back(t.as_text(n, key));
   if (out.size() < least || out.size() > most)
-    t.bad(RDM_ERROR_FORMAT, line_of(n), "%s: %zu names, not %zu to %zu", key, out.size(), least, most);
+    t.bad(RDM_ERROR_FORMAT, line_of(n), "%s: it has %zu names, but needs %zu to %zu", key, out.size(), least,
+          most);
   return out;
 }
 
@@ -162,7 +163,8 @@ void SceneText::add_robot(const Table& t) {
   const bool on_arm = t.find("arm") != nullptr && t.text("arm", "") != "none";
   if (t.find("robot")) {
     if (t.find("hand") || t.find("arm"))
-      t.bad(RDM_ERROR_FORMAT, line_of(*t.find("robot")), "robot is there, and hand or arm too");
+      t.bad(RDM_ERROR_FORMAT, line_of(*t.find("robot")),
+            "it has robot, and hand or arm too; give one of them");
     part.listed = find("robot");
   } else if (t.find("hand") && on_arm) {
     double yaw = 0, adapter = 0;
@@ -178,7 +180,7 @@ void SceneText::add_robot(const Table& t) {
   } else if (on_arm) {
     part.listed = find("arm");
   } else {
-    t.bad(RDM_ERROR_FORMAT, line_of(t.t), "no robot, hand or arm");
+    t.bad(RDM_ERROR_FORMAT, line_of(t.t), "it needs a robot, a hand or an arm");
   }
   try {
     read_built(mounted.robot >= 0 ? mounted.robot : part.listed, part.draft.get());
@@ -204,7 +206,7 @@ void SceneText::add_tree(const Table& t) {
 void SceneText::add_part(Part part, const char* kind) {
   const Table& t = part.t;
   if (parts_.size() == kMostPlayers)
-    t.bad(RDM_ERROR_RANGE, line_of(t.t), "more than %d robots and trees", kMostPlayers);
+    t.bad(RDM_ERROR_RANGE, line_of(t.t), "there are more than %d robots and trees", kMostPlayers);
   rdm_scene_robot r;
   rdm_scene_robot_init(&r, sizeof r);
   r.robot = part.listed;
@@ -219,12 +221,13 @@ void SceneText::add_part(Part part, const char* kind) {
   Span ps[3], turns[3];
   double fixed[4];
   if (read_drawn(t, ps, turns, fixed, part.p, part.q) && !r.free_base)
-    t.bad(RDM_ERROR_RANGE, line_of(t.t), "p, rpy: a %s whose base is fixed is not moved at a reset", kind);
+    t.bad(RDM_ERROR_RANGE, line_of(t.t),
+          "p, rpy: a %s with a fixed base cannot be moved at a reset, so no range is allowed", kind);
   std::copy_n(part.p, 3, r.pose.p);
   std::copy_n(part.q, 4, r.pose.q);
   if (t.flag("compensate")) {
     if (!r.gravity)
-      t.bad(RDM_ERROR_FORMAT, line_of(*t.find("compensate")), "compensate goes with gravity = true");
+      t.bad(RDM_ERROR_FORMAT, line_of(*t.find("compensate")), "compensate needs gravity = true");
     compensated_ = true;
   }
   check(t, line_of(t.t), rdm_scene_add_robot(scene_, &r, nullptr));
@@ -255,7 +258,7 @@ void SceneText::reach(Part* part, int32_t arm) {
   part->start = of_arm.home;
   int32_t found = 0;
   check(t, line_of(t.t), rdm_robot_reach(arm, &flange, part->start.data(), &found));
-  if (!found) t.bad(RDM_ERROR_RANGE, line_of(t.t), "the arm does not reach this");
+  if (!found) t.bad(RDM_ERROR_RANGE, line_of(t.t), "the arm cannot reach this place");
 }
 
 void SceneText::read_shape(const Table& t, const std::string* name, Shapes* out) const {
@@ -270,7 +273,7 @@ void SceneText::read_shape(const Table& t, const std::string* name, Shapes* out)
   if (s.kind == RDM_SHAPE_HULL) {
     const toml::node& n = t.need("points");
     const toml::array* a = n.as_array();
-    if (!a) t.bad(RDM_ERROR_FORMAT, line_of(n), "points is no list of [x, y, z]");
+    if (!a) t.bad(RDM_ERROR_FORMAT, line_of(n), "points is not a list of [x, y, z]");
     out->points.emplace_back();
     for (const toml::node& x : *a)
       for (const double c : t.list(x, "points", 3, 3)) out->points.back().push_back(c);
@@ -321,7 +324,8 @@ void SceneText::add_body(const Table& t) {
   Shapes shapes;
   if (t.find("kind")) {
     if (t.find("shape"))
-      t.bad(RDM_ERROR_FORMAT, line_of(*t.find("kind")), "kind is there, and [[body.shape]] too");
+      t.bad(RDM_ERROR_FORMAT, line_of(*t.find("kind")),
+            "it has kind, and [[body.shape]] too; give one of them");
     read_shape(t, nullptr, &shapes);
     names_.push_back(name);
   } else {
@@ -332,7 +336,7 @@ void SceneText::add_body(const Table& t) {
       place_shape(s, &shapes.rows.back());
       names_.push_back(own);
     }
-    if (shapes.rows.empty()) t.bad(RDM_ERROR_FORMAT, line_of(t.t), "no kind, and no [[body.shape]]");
+    if (shapes.rows.empty()) t.bad(RDM_ERROR_FORMAT, line_of(t.t), "it needs kind, or a [[body.shape]]");
     names_.push_back(name);
   }
   b.shapes = shapes.rows.data();

@@ -15,8 +15,8 @@ class SceneOptions : public Lookup {
   double number(const std::string& key) const override {
     double low = 0, high = 0, value = 0;
     if (rdm_scene_get_range(scene_, key.c_str(), &low, &high) == RDM_OK && low != high)
-      refuse(RDM_ERROR_RANGE, "option %s is a range, %g..%g: nothing is drawn here", clean(key).c_str(), low,
-             high);
+      refuse(RDM_ERROR_RANGE, "option %s is a range, %g..%g, but this value cannot be drawn",
+             clean(key).c_str(), low, high);
     check(rdm_scene_get_number(scene_, key.c_str(), &value));
     return value;
   }
@@ -73,7 +73,7 @@ class SceneText {
   bool read_drawn(const Table& t, Span* ps, Span* turns, double* fixed, double* p, double* q) const;
   template <class T>
   T* take(const Table& t, T* rows, int32_t* count, int32_t most, const char* what) const {
-    if (*count == most) t.bad(RDM_ERROR_RANGE, line_of(t.t), "more than %d %s", most, what);
+    if (*count == most) t.bad(RDM_ERROR_RANGE, line_of(t.t), "there are more than %d %s", most, what);
     return rows + (*count)++;
   }
   // rows
@@ -101,8 +101,7 @@ class SceneText {
     moves = spans(t, "w", d.w, 3) || moves;
     d.apart = t.flag("apart", true);
     check(t, line_of(t.t), add(pose, &d.body));
-    if (moves)
-      *take(t, p_.draws, &p_.num_draws, kMostDraws, "bodies that begin with a range in p, rpy, v or w") = d;
+    if (moves) *take(t, p_.draws, &p_.num_draws, kMostDraws, "bodies with a range in p, rpy, v or w") = d;
   }
   // One of the catalogue, or the host's: shapes, mass and friction are its own.
   void add_object(const Table& t);

@@ -16,7 +16,7 @@ constexpr const char* kCurves[] = {"value", "near", "bell", "above", "below", "o
 
 void TermText::listed_joints(const Table& t, Term* out) {
   if (t.find("of") && t.find("joints"))
-    t.bad(RDM_ERROR_FORMAT, line_of(*t.find("of")), "of and joints are both there");
+    t.bad(RDM_ERROR_FORMAT, line_of(*t.find("of")), "it has both of and joints; give one of them");
   const char* key = t.find("joints") ? "joints" : "of";
   // The term keeps a run of the program's list of joints: [first, first + count), in the patterns' order.
   out->first = p_.num_joints;
@@ -93,7 +93,7 @@ Term TermText::subject(const Table& t, const TermRow& row, std::vector<const cha
       out.to = 1;
       t.number("from", &out.from);
       t.number("to", &out.to);
-      if (out.from == out.to) t.bad(RDM_ERROR_RANGE, line_of(n), "from and to are the same");
+      if (out.from == out.to) t.bad(RDM_ERROR_RANGE, line_of(n), "from and to are equal");
     }
   }
   if (has(kActionOf, {"of"})) {
@@ -103,7 +103,7 @@ Term TermText::subject(const Table& t, const TermRow& row, std::vector<const cha
       out.first = p_.players[robot].action;
       // the entries of its joints, and force and torque on a base that floats
       out.count = p_.players[robot].actions + (p_.players[robot].push_action >= 0 ? 6 : 0);
-      if (out.count == 0) t.bad(RDM_ERROR_RANGE, line_of(*n), "of: no action moves it");
+      if (out.count == 0) t.bad(RDM_ERROR_RANGE, line_of(*n), "of: no action moves this robot");
     }
   }
   if (has(kBox, {"low", "high", "from"})) {
@@ -149,7 +149,7 @@ Term TermText::subject(const Table& t, const TermRow& row, std::vector<const cha
     const Place* end = p_.starts + p_.num_starts;
     const Place* there = std::find_if(static_cast<const Place*>(p_.starts), end, same);
     out.index = static_cast<int32_t>(there - p_.starts);
-    if (there == end) *take(t, p_.starts, &p_.num_starts, kMostStarts, "places whose start counts") = out.a;
+    if (there == end) *take(t, p_.starts, &p_.num_starts, kMostStarts, "places whose start is used") = out.a;
   }
   return out;
 }
@@ -167,14 +167,15 @@ void TermText::curve(const Table& t, Term* out, std::vector<const char*>* known,
   const bool at = out->curve >= Curve::kAbove && out->curve <= Curve::kUnder;
   if (at) out->at = t.as_number(t.need("at"), "at");
   if (!wide && t.find("width"))
-    t.bad(RDM_ERROR_FORMAT, line_of(*t.find("width")), "width: curve near or bell has one");
+    t.bad(RDM_ERROR_FORMAT, line_of(*t.find("width")), "width: only the curves near and bell have one");
   if (!at && t.find("at"))
-    t.bad(RDM_ERROR_FORMAT, line_of(*t.find("at")), "at: curve above, below, over or under has one");
+    t.bad(RDM_ERROR_FORMAT, line_of(*t.find("at")),
+          "at: only the curves above, below, over and under have one");
   if (!changes) return;
   known->push_back("change");
   if (t.flag("change")) {
     if (p_.num_last == kMostChanges)
-      t.bad(RDM_ERROR_RANGE, line_of(t.t), "more than %d terms of a change", kMostChanges);
+      t.bad(RDM_ERROR_RANGE, line_of(t.t), "there are more than %d terms that are a change", kMostChanges);
     out->last = p_.num_last++;
   }
 }
@@ -189,7 +190,7 @@ void TermText::threshold(const Table& t, Term* out, std::vector<const char*>* kn
       t.bad(RDM_ERROR_RANGE, line_of(t.t), "above %g is not less than below %g", out->above, out->below);
     return;
   }
-  if (needed) t.bad(RDM_ERROR_FORMAT, line_of(t.t), "no above, and no below");
+  if (needed) t.bad(RDM_ERROR_FORMAT, line_of(t.t), "it needs above or below");
   out->above = 0;  // a cost without thresholds counts what is above 0
 }
 
@@ -198,7 +199,7 @@ void TermText::read_terms() {
     const TermRow& row = term_of(t, true);
     std::vector<const char*> known{"term", "name", "scale", "unit"};
     Term term = subject(t, row, &known);
-    if (row.what == What::kOverlap) t.bad(RDM_ERROR_FORMAT, line_of(t.t), "overlap is not observed");
+    if (row.what == What::kOverlap) t.bad(RDM_ERROR_FORMAT, line_of(t.t), "overlap cannot be observed");
     if (!(row.keys & kMany)) curve(t, &term, &known, false);
     t.only(known);
     term.weight = 1;

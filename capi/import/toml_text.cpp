@@ -28,8 +28,9 @@ void check_cost(const std::string& bytes) {
     else if (c == '#' && parts == 0)  // the dots of a comment are none of a key
       key = false;
     if (parts > kMostParts)
-      refuse(RDM_ERROR_RANGE, "line %d: a key of more than %zu parts", line, kMostParts);
-    if (values > kMostValues) refuse(RDM_ERROR_RANGE, "line %d: more than %zu values", line, kMostValues);
+      refuse(RDM_ERROR_RANGE, "line %d: a key has more than %zu parts", line, kMostParts);
+    if (values > kMostValues)
+      refuse(RDM_ERROR_RANGE, "line %d: there are more than %zu values", line, kMostValues);
   }
 }
 
@@ -40,7 +41,7 @@ void parser_fault() {
 }
 
 toml::table parse_toml(const std::string& bytes) {
-  if (bytes.size() > kMostToml) refuse(RDM_ERROR_RANGE, "more than %zu bytes", kMostToml);
+  if (bytes.size() > kMostToml) refuse(RDM_ERROR_RANGE, "it has more than %zu bytes", kMostToml);
   check_cost(bytes);
   try {
     toml::parse_result first = toml::parse(std::string_view(bytes));
@@ -52,7 +53,7 @@ toml::table parse_toml(const std::string& bytes) {
     refuse(RDM_ERROR_FORMAT, "line %d: %s", line_of(e.source()),
            clean(std::string(e.description()), 200).c_str());
   } catch (const ParserFault&) {
-    refuse(RDM_ERROR_FORMAT, "line %ld: no TOML", std::count(bytes.begin(), bytes.end(), '\n') + 1);
+    refuse(RDM_ERROR_FORMAT, "line %ld: this is not TOML", std::count(bytes.begin(), bytes.end(), '\n') + 1);
   }
 }
 
@@ -72,14 +73,14 @@ void Table::only(const std::vector<const char*>& known) const {
     std::vector<std::string> names;
     for (const char* k : known) found = found || name == k, names.emplace_back(k);
     if (!found)
-      bad(RDM_ERROR_FORMAT, line_of(key.source()), "%s is no key%s", clean(name).c_str(),
+      bad(RDM_ERROR_FORMAT, line_of(key.source()), "%s is not a known key%s", clean(name).c_str(),
           nearest_hint(name, names).c_str());
   }
 }
 
 const toml::node& Table::need(const char* key) const {
   const toml::node* n = find(key);
-  if (!n) bad(RDM_ERROR_FORMAT, line_of(t), "no %s", key);
+  if (!n) bad(RDM_ERROR_FORMAT, line_of(t), "%s is missing", key);
   return *n;
 }
 
@@ -95,7 +96,7 @@ double Table::as_number(const toml::node& n, const char* key) const {
       bad(r.code, line_of(n), "%s: %s", key, r.text.c_str());
     }
   }
-  bad(RDM_ERROR_FORMAT, line_of(n), "%s is no number", key);
+  bad(RDM_ERROR_FORMAT, line_of(n), "%s is not a number", key);
 }
 
 int32_t Table::integer(const char* key, int32_t otherwise, int32_t low, int32_t high) const {
@@ -103,7 +104,7 @@ int32_t Table::integer(const char* key, int32_t otherwise, int32_t low, int32_t 
   if (!n) return otherwise;
   const double x = as_number(*n, key);
   if (!(x >= low && x <= high) || x != std::floor(x))
-    bad(RDM_ERROR_RANGE, line_of(*n), "%s: %g is no whole number of [%d, %d]", key, x, low, high);
+    bad(RDM_ERROR_RANGE, line_of(*n), "%s: %g is not a whole number in [%d, %d]", key, x, low, high);
   return static_cast<int32_t>(x);
 }
 
@@ -120,8 +121,8 @@ std::vector<double> Table::list(const toml::node& n, const char* key, size_t lea
   const toml::array* a = n.as_array();
   if (!a || a->size() < least || a->size() > most)
     bad(RDM_ERROR_FORMAT, line_of(n),
-        least == most ? "%s is no list of %zu numbers" : "%s is no list of %zu to %zu numbers", key, least,
-        most);
+        least == most ? "%s is not a list of %zu numbers" : "%s is not a list of %zu to %zu numbers", key,
+        least, most);
   std::vector<double> out;
   for (const toml::node& x : *a) out.push_back(as_number(x, key));
   return out;
@@ -129,9 +130,10 @@ std::vector<double> Table::list(const toml::node& n, const char* key, size_t lea
 
 std::string Table::as_text(const toml::node& n, const char* key) const {
   const auto* x = n.as_string();
-  if (!x) bad(RDM_ERROR_FORMAT, line_of(n), "%s is no text", key);
+  if (!x) bad(RDM_ERROR_FORMAT, line_of(n), "%s is not a string", key);
   // it would end the name for C, and two names could be the same
-  if (x->get().find('\0') != std::string::npos) bad(RDM_ERROR_FORMAT, line_of(n), "%s has a 0 in it", key);
+  if (x->get().find('\0') != std::string::npos)
+    bad(RDM_ERROR_FORMAT, line_of(n), "%s contains a character 0", key);
   if (!lookup || x->get().size() < 2 || x->get()[0] != '$') return x->get();
   try {
     return lookup->text(x->get().substr(1));
@@ -149,7 +151,7 @@ int32_t Table::choice(const char* key, const char* const* names, int32_t count, 
     if (text == names[i]) return i;
     all.emplace_back(names[i]);
   }
-  bad(RDM_ERROR_FORMAT, line_of(*n), "%s: %s is not known%s", key, clean(text).c_str(),
+  bad(RDM_ERROR_FORMAT, line_of(*n), "%s: %s is unknown%s", key, clean(text).c_str(),
       nearest_hint(text, all).c_str());
 }
 
@@ -158,11 +160,12 @@ std::vector<Table> Table::rows(const char* key) const {
   const toml::node* n = find(key);
   if (!n) return all;
   const toml::array* a = n->as_array();
-  if (!a) bad(RDM_ERROR_FORMAT, line_of(*n), "%s is written as [[%s]]", key, key);
-  if (a->size() > kMostRows) bad(RDM_ERROR_RANGE, line_of(*n), "more than %zu rows of %s", kMostRows, key);
+  if (!a) bad(RDM_ERROR_FORMAT, line_of(*n), "%s must be written as [[%s]]", key, key);
+  if (a->size() > kMostRows)
+    bad(RDM_ERROR_RANGE, line_of(*n), "there are more than %zu rows of %s", kMostRows, key);
   for (const toml::node& x : *a) {
     const toml::table* row = x.as_table();
-    if (!row) bad(RDM_ERROR_FORMAT, line_of(x), "%s is written as [[%s]]", key, key);
+    if (!row) bad(RDM_ERROR_FORMAT, line_of(x), "%s must be written as [[%s]]", key, key);
     std::string name = what.empty() ? key : what + ": " + key;
     // what a reader of an error finds the row by
     for (const char* naming : {"name", "link", "term"})
@@ -180,7 +183,7 @@ Table Table::section(const char* key) const {
   const toml::node* n = find(key);
   const std::string name = what.empty() ? key : what + ": " + key;
   if (!n) return {kEmpty, name, lookup};
-  if (!n->is_table()) bad(RDM_ERROR_FORMAT, line_of(*n), "%s is written as [%s]", key, key);
+  if (!n->is_table()) bad(RDM_ERROR_FORMAT, line_of(*n), "%s must be written as [%s]", key, key);
   return {*n->as_table(), name, lookup};
 }
 

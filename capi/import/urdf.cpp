@@ -31,7 +31,7 @@ struct Reader {
 
   static std::string needed(const Element& e, const char* attribute) {
     const std::string* text = e.get(attribute);
-    if (!text || text->empty()) refuse_at(RDM_ERROR_FORMAT, e, "no %s", attribute);
+    if (!text || text->empty()) refuse_at(RDM_ERROR_FORMAT, e, "%s is missing", attribute);
     refuse_xacro(e, attribute, *text);
     return *text;
   }
@@ -45,7 +45,7 @@ struct Reader {
       if (const std::string* xyz = o->get("xyz")) X.p = vector3(*o, "xyz", *xyz);
       if (const std::string* rpy = o->get("rpy")) X.q = from_rpy(vector3(*o, "rpy", *rpy));
       if (const std::string* quat = o->get("quat_xyzw")) {
-        if (o->find("rpy")) refuse_at(RDM_ERROR_FORMAT, *o, "rpy and quat_xyzw");
+        if (o->find("rpy")) refuse_at(RDM_ERROR_FORMAT, *o, "it has both rpy and quat_xyzw");
         const auto n = numbers(*o, "quat_xyzw", *quat, 4, 4);
         if (n[0] * n[0] + n[1] * n[1] + n[2] * n[2] + n[3] * n[3] < 1e-18)
           refuse_at(RDM_ERROR_ARGUMENT, *o, "quat_xyzw: its length is 0");
@@ -57,17 +57,17 @@ struct Reader {
 
   void find_links() {
     for (const Element* e : robot.all("link")) {
-      if (!links.emplace(needed(*e, "name"), e).second) refuse_at(RDM_ERROR_ARGUMENT, *e, "it stands twice");
+      if (!links.emplace(needed(*e, "name"), e).second) refuse_at(RDM_ERROR_ARGUMENT, *e, "it occurs twice");
     }
-    if (links.empty()) refuse_at(RDM_ERROR_FORMAT, robot, "no link");
+    if (links.empty()) refuse_at(RDM_ERROR_FORMAT, robot, "there is no link");
   }
   const Element& link(const Element& joint, const char* which, const std::string& name) const {
     const auto found = links.find(name);
     if (found != links.end()) return *found->second;
     std::vector<std::string> names;
     for (const auto& [known, e] : links) names.push_back(known);
-    refuse_at(RDM_ERROR_NOT_FOUND, joint, "%s %s: there is no such link%s", which, clean(name).c_str(),
-              nearest_hint(name, names).c_str());
+    refuse_at(RDM_ERROR_NOT_FOUND, joint, "%s %s: there is no link of this name%s", which,
+              clean(name).c_str(), nearest_hint(name, names).c_str());
   }
 
   void find_joints() {
@@ -76,15 +76,15 @@ struct Reader {
       Joint j{e, needed(*e, "name"), needed(*e, "type"), "", ""};
       for (const char* which : {"parent", "child"}) {
         const Element* end = e->child(which);
-        if (!end) refuse_at(RDM_ERROR_FORMAT, *e, "no %s", which);
+        if (!end) refuse_at(RDM_ERROR_FORMAT, *e, "%s is missing", which);
         const std::string name = needed(*end, "link");
         link(*e, which, name);
         (which[0] == 'p' ? j.parent : j.child) = name;
       }
-      if (!names.emplace(j.name, e).second) refuse_at(RDM_ERROR_ARGUMENT, *e, "it stands twice");
+      if (!names.emplace(j.name, e).second) refuse_at(RDM_ERROR_ARGUMENT, *e, "it occurs twice");
       const auto [other, first] = above.emplace(j.child, joints.size());
       if (!first)
-        refuse_at(RDM_ERROR_ARGUMENT, *e, "link %s has two parents: joint %s of line %d too",
+        refuse_at(RDM_ERROR_ARGUMENT, *e, "link %s has two parents: this joint and joint %s of line %d",
                   clean(j.child).c_str(), clean(joints[other->second].name).c_str(),
                   joints[other->second].element->line);
       below[j.parent].push_back(joints.size());
@@ -105,7 +105,7 @@ struct Reader {
       if (child->tag == "link" && !above.count(child->find("name")->value)) {
         if (root)
           refuse_at(RDM_ERROR_ARGUMENT, *child,
-                    "no joint carries it, nor %s of line %d: config.root says which is taken",
+                    "it has no parent joint, and neither has %s of line %d; set config.root to one of them",
                     where(*root).substr(where(*root).find(": ") + 2).c_str(), root->line);
         root = child.get();
       }
@@ -138,7 +138,7 @@ struct Reader {
       Mass one{1, {}, moment};
       if (!point) check_mass(*inertia, what, options.mend_inertia, &one, out);
       out->note(RDM_NOTE_CHANGED, mass->line, "%s has no mass%s", what.c_str(),
-                point ? "" : "; its moments are part of what carries it");
+                point ? "" : "; its moments of inertia were added to its parent's");
       return X * Mass{0, {}, one.moment};
     }
     if (!(m > 0)) refuse_at(RDM_ERROR_RANGE, *mass, "%s: the mass %g is not above 0", what.c_str(), m);
@@ -153,7 +153,7 @@ struct Reader {
     for (size_t k = 1; k < all.size(); ++k) {
       mark(*all[k]);
       out->note(RDM_NOTE_CHANGED, all[k]->line,
-                "link %s: a second inertial, passed over as in ROS: that of line %d counts",
+                "link %s: its second inertial was ignored, as in ROS; the one of line %d counts",
                 clean(l.find("name")->value).c_str(), all[0]->line);
     }
   }
@@ -177,7 +177,7 @@ struct Reader {
   void weigh(const Element& l, double density, BodyIn* body) {
     for (const Mass& m : weighed) body->mass = body->mass + scaled(density, m);
     if (body->mass.mass > 0)
-      out->note(RDM_NOTE_GUESSED, l.line, "link %s: mass %.4g, of its shapes at %g kg/m3",
+      out->note(RDM_NOTE_GUESSED, l.line, "link %s: mass %.4g kg, from its shapes at %g kg/m3",
                 clean(body->name).c_str(), body->mass.mass, density);
   }
   std::vector<Mass> weighed;  // shapes of the link at hand, of density 1
@@ -199,15 +199,16 @@ struct Reader {
       if (const std::string* name = c->get("name")) s.name = *name;
       const Pose X = origin_of(*c);
       const Element* geometry = c->child("geometry");
-      if (!geometry) refuse_at(RDM_ERROR_FORMAT, *c, "link %s: no geometry", clean(body->name).c_str());
+      if (!geometry) refuse_at(RDM_ERROR_FORMAT, *c, "link %s has no geometry", clean(body->name).c_str());
       const Element* g = nullptr;
       for (const char* kind : {"box", "cylinder", "sphere", "capsule", "mesh"})
         if (!g) g = geometry->child(kind);
       if (!g)
         refuse_at(RDM_ERROR_UNSUPPORTED, *geometry,
-                  "link %s: neither box, cylinder, sphere, capsule nor mesh", clean(body->name).c_str());
+                  "link %s: its geometry must be a box, cylinder, sphere, capsule or mesh",
+                  clean(body->name).c_str());
       if (is_point(*g)) {
-        out->note(RDM_NOTE_DROPPED, g->line, "link %s: a %s of no size", clean(body->name).c_str(),
+        out->note(RDM_NOTE_DROPPED, g->line, "link %s: a %s without a size", clean(body->name).c_str(),
                   g->tag.c_str());
         continue;
       }
@@ -265,10 +266,10 @@ struct Reader {
     }
     const Element* limit = j.element->child("limit");
     const bool continuous = j.type == "continuous";
-    if (!limit && !continuous) refuse_at(RDM_ERROR_FORMAT, *j.element, "no limit");
+    if (!limit && !continuous) refuse_at(RDM_ERROR_FORMAT, *j.element, "it has no limit");
     if (continuous) {
       o.lower = -2 * M_PI, o.upper = 2 * M_PI;
-      out->note(RDM_NOTE_CHANGED, j.element->line, "joint %s turns without end: its range is +-2 pi",
+      out->note(RDM_NOTE_CHANGED, j.element->line, "joint %s has no limits: its range is set to +-2 pi",
                 clean(j.name).c_str());
     } else {
       const double most = most_of(options, o.slides);
@@ -276,8 +277,8 @@ struct Reader {
         const std::string* text = limit->get(key);
         const double x = text ? bound(*limit, key, *text) : 0;
         if (std::isfinite(x)) return x;
-        out->note(RDM_NOTE_CHANGED, limit->line, "joint %s: %s %s is none: %g", clean(j.name).c_str(), key,
-                  clean(*text).c_str(), std::copysign(most, x));
+        out->note(RDM_NOTE_CHANGED, limit->line, "joint %s: %s %s means no limit, and was replaced by %g",
+                  clean(j.name).c_str(), key, clean(*text).c_str(), std::copysign(most, x));
         return std::copysign(most, x);
       };
       o.lower = end("lower");
@@ -291,18 +292,18 @@ struct Reader {
         const std::string* text = limit->get(key);
         const double x = text ? bound(*limit, key, *text) : otherwise;
         if (std::isfinite(x)) return x;
-        out->note(RDM_NOTE_CHANGED, limit->line, "joint %s: %s %s is no bound", clean(j.name).c_str(), key,
-                  clean(*text).c_str());
+        out->note(RDM_NOTE_CHANGED, limit->line, "joint %s: %s %s is not a bound, and was ignored",
+                  clean(j.name).c_str(), key, clean(*text).c_str());
         return otherwise;
       };
       o.effort = most("effort", -1);
       if (o.effort == 0)
-        out->note(RDM_NOTE_CHANGED, limit->line, "joint %s: effort 0 is none: it is guessed",
+        out->note(RDM_NOTE_CHANGED, limit->line, "joint %s: effort 0 means none, so the effort is guessed",
                   clean(j.name).c_str());
       o.velocity = most("velocity", 0);
       if (o.velocity < 0)
-        out->note(RDM_NOTE_CHANGED, limit->line, "joint %s: velocity %g is no bound", clean(j.name).c_str(),
-                  std::exchange(o.velocity, 0));
+        out->note(RDM_NOTE_CHANGED, limit->line, "joint %s: velocity %g is not a bound, and was ignored",
+                  clean(j.name).c_str(), std::exchange(o.velocity, 0));
     }
     if (const Element* dynamics = j.element->child("dynamics")) {
       if (const auto* t = dynamics->get("damping"))
@@ -320,7 +321,7 @@ struct Reader {
 
   // The link and what hangs on it, in the order of the joints.
   void add(const std::string& name, int parent, const Joint* joint, int depth) {
-    if (depth > 200) refuse_at(RDM_ERROR_RANGE, *joint->element, "more than 200 links in a chain");
+    if (depth > 200) refuse_at(RDM_ERROR_RANGE, *joint->element, "there are more than 200 links in a chain");
     const Element& l = *links.at(name);
     BodyIn body;
     body.name = name;
@@ -331,11 +332,12 @@ struct Reader {
       if (joint->type == "revolute" || joint->type == "continuous" || joint->type == "prismatic") {
         body.joints.push_back(moving(*joint));
       } else if (joint->type == "floating" && parent == 0) {
-        out->note(RDM_NOTE_DROPPED, joint->element->line, "joint %s: floating, taken as fixed",
-                  clean(joint->name).c_str());
+        out->note(RDM_NOTE_DROPPED, joint->element->line,
+                  "joint %s is floating: it was replaced by a fixed one", clean(joint->name).c_str());
       } else if (joint->type != "fixed") {
         refuse_at(RDM_ERROR_UNSUPPORTED, *joint->element,
-                  "type %s: neither revolute, continuous, prismatic nor fixed", clean(joint->type).c_str());
+                  "type %s is not supported: it must be revolute, continuous, prismatic or fixed",
+                  clean(joint->type).c_str());
       } else {  // said of fixed joints without a meaning
         for (const char* tag : {"axis", "limit", "dynamics"})
           if (const Element* e = joint->element->child(tag)) mark(*e);
@@ -360,7 +362,8 @@ struct Reader {
   void read() {
     robot.get("name");
     if (options.density == 0)
-      model.massless_hint = ": config.density gives one to links without inertial, of their collision";
+      model.massless_hint =
+          "; set config.density to compute masses of links without inertial from their collision shapes";
     model.name = robot.find("name") ? robot.find("name")->value : "";
     find_links();
     find_joints();
@@ -369,13 +372,13 @@ struct Reader {
     if (options.root.empty() && model.bodies.size() != links.size()) {
       for (const auto& [name, e] : links)
         if (!taken.count(name))
-          refuse_at(RDM_ERROR_ARGUMENT, *e, "it hangs in a loop of joints, not on the root %s",
+          refuse_at(RDM_ERROR_ARGUMENT, *e, "it is in a loop of joints, and not below the root %s",
                     clean(root).c_str());
     }
     if (!options.root.empty())
       for (const auto& [name, e] : links)
         if (!taken.count(name)) {
-          out->note(RDM_NOTE_DROPPED, e->line, "link %s: not below config.root", clean(name).c_str());
+          out->note(RDM_NOTE_DROPPED, e->line, "link %s is not below config.root", clean(name).c_str());
           mark(*e);
         }
   }
@@ -385,7 +388,8 @@ struct Reader {
 
 void read_urdf(const std::string& bytes, const Options& options, Draft* out) {
   const auto robot = parse_xml(bytes, options, false, out);
-  if (robot->tag != "robot") refuse_at(RDM_ERROR_FORMAT, *robot, "no URDF: the first element is not robot");
+  if (robot->tag != "robot")
+    refuse_at(RDM_ERROR_FORMAT, *robot, "this is not URDF: the first element is not robot");
   check_urdf(*robot);
   Reader reader(*robot, options, out);
   reader.read();

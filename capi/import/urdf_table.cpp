@@ -81,10 +81,10 @@ struct Refused {
 };
 constexpr Refused kRefused[] = {
     {"loop_joint drake:ball_constraint drake:linear_bushing_rpy",
-     "it closes a loop of links: a robot is a tree"},
+     "it closes a loop of links, but a robot must be a tree"},
     {"drake:joint", "it would join links, and is not read"},
-    {"drake:mimic", "it couples joints, and is not read: write it as mimic"},
-    {"fem deformable reduced_deformable", "bodies that bend are not read"},
+    {"drake:mimic", "it couples joints, and is not read; write it as mimic"},
+    {"fem deformable reduced_deformable", "deformable bodies are not read"},
 };
 
 std::string nearest(const std::string& word, const Words& known) {
@@ -112,9 +112,9 @@ void check_child(const Element& e, const Row& row, const Element& c) {
   if (row.read.count(c.tag) || row.dropped.count(c.tag) || is_foreign(c.tag) || is_identity(c)) return;
   for (const auto& [other, others] : rows())
     if (others.read.count(c.tag))
-      refuse_at(RDM_ERROR_FORMAT, c, "it stands in %s, not in %s", other.c_str(), e.tag.c_str());
+      refuse_at(RDM_ERROR_FORMAT, c, "it must be in %s, not in %s", other.c_str(), e.tag.c_str());
   if (e.tag != "geometry")  // its reader says what shapes there are
-    refuse_at(RDM_ERROR_UNSUPPORTED, c, "no element that is known in %s, and it could change the robot%s",
+    refuse_at(RDM_ERROR_UNSUPPORTED, c, "this is not a known element in %s, and it could change the robot%s",
               e.tag.c_str(), nearest(c.tag, row.read).c_str());
 }
 
@@ -129,9 +129,8 @@ void check_element(const Element& e, const Row& row) {
   for (const Attribute& a : e.attributes) {
     if (row.attributes.count(a.name) || row.unused.count(a.name) || is_foreign(a.name) || is_zero(a.value))
       continue;
-    refuse_at(RDM_ERROR_UNSUPPORTED, e,
-              "%s is no attribute that is known here, and it could change the robot%s", clean(a.name).c_str(),
-              nearest(a.name, row.attributes).c_str());
+    refuse_at(RDM_ERROR_UNSUPPORTED, e, "%s is not a known attribute here, and it could change the robot%s",
+              clean(a.name).c_str(), nearest(a.name, row.attributes).c_str());
   }
   std::map<std::string, const Element*> found;
   for (const auto& child : e.children) {
@@ -139,8 +138,8 @@ void check_element(const Element& e, const Row& row) {
     if (row.once.count(child->tag)) {
       const auto [first, is_new] = found.emplace(child->tag, child.get());
       if (!is_new && !same(*first->second, *child))
-        refuse_at(RDM_ERROR_FORMAT, *child, "a second one, after that of line %d: which counts?",
-                  first->second->line);
+        refuse_at(RDM_ERROR_FORMAT, *child,
+                  "there is already one in line %d, and it is not clear which counts", first->second->line);
     }
     const auto known = rows().find(child->tag);
     if (row.read.count(child->tag) && known != rows().end()) check_element(*child, known->second);

@@ -20,9 +20,9 @@ constexpr size_t kMostText = 256, kEach = 64;  // bytes of a text of numbers, an
 const char* reason_of(tinyxml2::XMLError e) {
   switch (e) {
     case tinyxml2::XML_ERROR_PARSING_DECLARATION:
-      return "the declaration <?xml ...?> must stand first in the file, before comments too";
+      return "the declaration <?xml ...?> must come first in the file, even before comments";
     case tinyxml2::XML_ERROR_PARSING_ATTRIBUTE:
-      return "an attribute that is not name=\"value\", or stands twice";
+      return "an attribute that is not name=\"value\", or occurs twice";
     case tinyxml2::XML_ERROR_PARSING_TEXT:
       return "a text that does not end";
     case tinyxml2::XML_ERROR_PARSING_CDATA:
@@ -34,11 +34,11 @@ const char* reason_of(tinyxml2::XMLError e) {
     case tinyxml2::XML_ERROR_PARSING_ELEMENT:
       return "an element that does not end";
     case tinyxml2::XML_ERROR_MISMATCHED_ELEMENT:
-      return "an element that another one's end closes, or nothing";
+      return "an element that is closed by the end of another one, or not at all";
     case tinyxml2::XML_ERROR_EMPTY_DOCUMENT:
-      return "nothing stands in it";
+      return "it is empty";
     case tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED:
-      return "elements too deep in each other";
+      return "elements are nested too deeply";
     default:
       return tinyxml2::XMLDocument::ErrorIDToName(e);
   }
@@ -59,7 +59,7 @@ void refuse_doctype(const std::string& bytes, const std::string& file) {
     for (const char* word : {"[", "SYSTEM", "PUBLIC"})
       if (text.find(word) != std::string::npos)
         refuse(RDM_ERROR_UNSUPPORTED,
-               "line %ld%s: DOCTYPE: entities and files of declarations are not read: write the values "
+               "line %ld%s: DOCTYPE: entities and files of declarations are not read; write the values "
                "themselves",
                static_cast<long>(line), file.empty() ? "" : (" of " + clean(file)).c_str());
     return;
@@ -138,7 +138,7 @@ class Scan {
     }
     at_ = std::min(at_ + 1, bytes_.size());
     if (own > kMostAttributes)
-      refuse(RDM_ERROR_RANGE, "line %d%s: more than %zu attributes of one element", line_at(bytes_, begin),
+      refuse(RDM_ERROR_RANGE, "line %d%s: an element has more than %zu attributes", line_at(bytes_, begin),
              of_.c_str(), kMostAttributes);
     attributes += own;
   }
@@ -164,7 +164,7 @@ struct Parser {
       e->attributes.push_back({a->Name(), a->Value(), false});
     // its elements would be dropped as unknown ones, and with them half of the robot
     if (e->tag.rfind("xacro:", 0) == 0)
-      refuse_at(RDM_ERROR_UNSUPPORTED, *e, "xacro is not read: expand the file with the xacro tool first");
+      refuse_at(RDM_ERROR_UNSUPPORTED, *e, "xacro is not read; expand the file with the xacro tool first");
     for (const auto* c = x.FirstChildElement(); c; c = c->NextSiblingElement()) {
       if (includes && std::strcmp(c->Name(), "include") == 0)
         include(*c, file, depth, e.get());
@@ -178,11 +178,12 @@ struct Parser {
     const char* name = x.Attribute("file");
     const std::string at =
         format("line %d%s%s: include", x.GetLineNum(), file.empty() ? "" : " of ", file.c_str());
-    if (!name || !*name) refuse(RDM_ERROR_FORMAT, "%s: no file", at.c_str());
+    if (!name || !*name) refuse(RDM_ERROR_FORMAT, "%s: it has no attribute file", at.c_str());
     if (!options.has_folder)
-      refuse(RDM_ERROR_NOT_FOUND, "%s: %s: a text alone has no folder to look in", at.c_str(),
-             clean(name).c_str());
-    if (depth >= kMostIncludes) refuse(RDM_ERROR_RANGE, "%s: more than %d deep", at.c_str(), kMostIncludes);
+      refuse(RDM_ERROR_NOT_FOUND, "%s: %s: a text that is not from a file has no folder to search",
+             at.c_str(), clean(name).c_str());
+    if (depth >= kMostIncludes)
+      refuse(RDM_ERROR_RANGE, "%s: files are included more than %d deep", at.c_str(), kMostIncludes);
     std::string bytes;
     try {
       out->budget.spend(Cost::kFiles, 1);
@@ -207,12 +208,12 @@ struct Parser {
     tinyxml2::XMLDocument document;
     const auto result = document.Parse(bytes.data(), bytes.size());
     if (result != tinyxml2::XML_SUCCESS)
-      refuse(RDM_ERROR_FORMAT, "line %d%s: no XML: %s", document.ErrorLineNum(), of.c_str(),
+      refuse(RDM_ERROR_FORMAT, "line %d%s: this is not XML: %s", document.ErrorLineNum(), of.c_str(),
              reason_of(result));
     const auto* root = document.RootElement();
-    if (!root) refuse(RDM_ERROR_FORMAT, "line 1%s: no element", of.c_str());
+    if (!root) refuse(RDM_ERROR_FORMAT, "line 1%s: there is no element", of.c_str());
     if (scan.behind != std::string::npos)
-      out->note(RDM_NOTE_DROPPED, line_at(bytes, scan.behind), "what stands behind the end of <%s>%s%s%s",
+      out->note(RDM_NOTE_DROPPED, line_at(bytes, scan.behind), "text after the end of <%s>%s%s%s",
                 clean(root->Name()).c_str(), file.empty() ? "" : " (in ", file.c_str(),
                 file.empty() ? "" : ")");
     return copy(*root, file, depth);
@@ -346,7 +347,7 @@ double next_number(const char** at, const char* end) {
 void refuse_xacro(const Element& e, const char* attribute, const std::string& text) {
   if (text.find("${") != std::string::npos || text.find("$(") != std::string::npos)
     refuse_at(RDM_ERROR_UNSUPPORTED, e,
-              "%s: %s: xacro is not read: expand the file with the xacro tool first", attribute,
+              "%s: %s: xacro is not read; expand the file with the xacro tool first", attribute,
               clean(text).c_str());
 }
 
@@ -354,7 +355,7 @@ std::vector<double> numbers(const Element& e, const char* attribute, const std::
                             size_t most, double largest) {
   std::vector<double> out;
   if (text.size() > kMostText + kEach * most)
-    refuse_at(RDM_ERROR_RANGE, e, "%s: %zu bytes are too long a text for %zu number%s", attribute,
+    refuse_at(RDM_ERROR_RANGE, e, "%s: a text of %zu bytes is too long for %zu number%s", attribute,
               text.size(), most, most == 1 ? "" : "s");
   const char *c = text.data(), *end = c + text.size();
   while (true) {
@@ -363,7 +364,7 @@ std::vector<double> numbers(const Element& e, const char* attribute, const std::
     const double value = next_number(&c, end);
     if (std::isnan(value)) {
       refuse_xacro(e, attribute, text);
-      refuse_at(RDM_ERROR_FORMAT, e, "%s: %s is no number", attribute, clean(text).c_str());
+      refuse_at(RDM_ERROR_FORMAT, e, "%s: %s is not a number", attribute, clean(text).c_str());
     }
     if (!(std::abs(value) <= largest)) {
       const int power = static_cast<int>(std::lround(std::log10(largest)));

@@ -24,7 +24,7 @@ struct CompareFlags {
 std::vector<Scored> read_scores(CompareFlags flags) {
   for (const std::string& where : flags.where) {
     const size_t equals = where.find('=');
-    if (equals == std::string::npos) throw Usage("--where " + printable(where) + ": not column=text");
+    if (equals == std::string::npos) throw Usage("--where " + printable(where) + ": it is not column=text");
     flags.columns.where.emplace_back(where.substr(0, equals), where.substr(equals + 1));
   }
   const std::string text = read_file(flags.file);

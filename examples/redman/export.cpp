@@ -119,15 +119,15 @@ ActionBounds bounds_of(const std::optional<redman::Pool>& pool) {
     if (g.info.column != 0) continue;
     if (g.info.entry < 0)
       throw Usage(
-          "--shield project: a guard of the task is about several entries of the action, and the C file has "
-          "bounds of single ones alone; project what it gives by rdm_project");
+          "--shield project: a guard of the task is about several entries of the action, but a C file can "
+          "only bound single ones; project its actions with rdm_project");
     normals.insert(normals.end(), g.normal.begin(), g.normal.end());
     bounds.push_back(g.info.bound);
   }
   if (bounds.empty())
     throw Usage(
-        "--shield project: the policy's task declares no guards with the options of its run; throws do "
-        "with cost_mode=command");
+        "--shield project: the policy's task declares no guards with the options of its run; the throwing "
+        "tasks do with cost_mode=command");
   const std::vector<float> ends[] = {std::vector<float>(guards[0].normal.size(), -1.0f),
                                      std::vector<float>(guards[0].normal.size(), 1.0f)};
   return {redman::project(normals, bounds, ends[0].data(), ends[0].size()),
@@ -136,16 +136,17 @@ ActionBounds bounds_of(const std::optional<redman::Pool>& pool) {
 
 Report run_export(const ExportFlags& flags) {
   if (flags.onnx.empty() && flags.safetensors.empty() && flags.c.empty() && flags.probe.empty())
-    throw Usage("export: nothing to write; give --c FILE, --onnx FILE, --safetensors FILE or --probe FILE");
+    throw Usage(
+        "export: there is nothing to write; give --c FILE, --onnx FILE, --safetensors FILE or --probe FILE");
   if (flags.name_given) check_c_name(flags.name);
   const ShieldWord shield = read_shield_word(flags.shield);
   if (shield.on && (shield.predicts || flags.shield.find(':') != std::string::npos))
     throw Usage("--shield " + flags.shield +
-                ": a C file can project alone, without options: --shield project");
+                ": a C file can only project; give --shield project without options");
   const ActorChoice choice = choose_actor(flags.policy);
   if (choice.file.empty() || choice.recording)
     throw Usage("--policy " + flags.policy +
-                ": it is no network; give a policy file, a run folder or trained:TASK");
+                ": it is not a network; give a policy file, a run folder or trained:TASK");
   const redman::Policy policy(choice.file.c_str());
   Network network(policy);
   const auto world = world_of(policy, choice, 0);  // lends the names of its fields

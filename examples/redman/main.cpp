@@ -226,11 +226,12 @@ int run_tool(int argc, char** argv) {
   } catch (const Usage& e) {
     return fail(e.what(), 2, json);
   } catch (const std::bad_alloc&) {
-    return fail("out of memory: ask for less at once", 1, json);
+    return fail("out of memory: use fewer worlds or a shorter horizon", 1, json);
   } catch (const std::exception& e) {
     return fail(e.what(), 1, json);
   } catch (...) {
-    return fail("something was thrown that is no std::exception: a fault of redman's or a plugin's", 1, json);
+    return fail("something was thrown that is not a std::exception: this is a fault of redman or of a plugin",
+                1, json);
   }
 }
 

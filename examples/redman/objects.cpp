@@ -126,7 +126,7 @@ Report show(const rdm_object_def& def, const ObjectFlags& flags, Json json, cons
 
 // Hulls of the parts, in the mesh's own frame; mass and moments of the mesh where it is closed.
 Report object_of_mesh(const ObjectFlags& flags) {
-  if (!(flags.mass > 0)) throw Usage("--mass: a mesh needs one, above 0 kg");
+  if (!(flags.mass > 0)) throw Usage("--mass: an object from a mesh needs a mass above 0 kg");
   Mesh mesh = mesh_of(flags.file);
   for (Point& p : mesh.points)
     for (double& x : p) {
@@ -157,7 +157,7 @@ Report object_of_mesh(const ObjectFlags& flags) {
   if (hulls.empty()) throw Failure(flags.file + ": its parts are flat");
   if (hulls.size() > RDM_MAX_SHAPES)
     throw Failure(flags.file +
-                  format(": it fell into %zu parts, more than %d", hulls.size(), RDM_MAX_SHAPES));
+                  format(": it was cut into %zu parts, which is more than %d", hulls.size(), RDM_MAX_SHAPES));
   double error = 0;  // how far the mesh stands out of all parts
   for (const Point& p : mesh.points) {
     double least = kFarthest;
@@ -200,14 +200,15 @@ Report object_of_mesh(const ObjectFlags& flags) {
                      {"parts_m3", volume},
                      {"error_m", error},
                      {"parts", shapes.size()}};
-  return show(def, flags, json, how + format("; the mesh stands out of them by up to %.3g m\n", error));
+  return show(def, flags, json, how + format("; the mesh extends beyond them by up to %.3g m\n", error));
 }
 
 Report run_object(const ObjectFlags& flags) {
   if (is_mesh(flags.file)) return object_of_mesh(flags);
   if (flags.given)
-    throw Usage(flags.file +
-                ": --parts, --points, --mass, --friction, --material and --scale are of a mesh (.stl, .obj)");
+    throw Usage(
+        flags.file +
+        ": --parts, --points, --mass, --friction, --material and --scale are for a mesh (.stl, .obj) only");
   const Import import = import_object(flags.file);
   rdm_object_def def = object_def_of(import);
   std::string how;

@@ -33,7 +33,7 @@ void read_size(RenderFlags& flags) {
   const bool read = read_whole(flags.size.substr(0, cross), &width) && cross < flags.size.size() &&
                     read_whole(flags.size.substr(cross + 1), &height);
   if (!read || width < 1 || height < 1 || width > kMostPixels || height > kMostPixels)
-    throw Usage("--size " + flags.size + ": not WIDTHxHEIGHT, such as 640x480, up to " +
+    throw Usage("--size " + flags.size + ": it is not WIDTHxHEIGHT, such as 640x480, up to " +
                 std::to_string(kMostPixels));
   flags.width = static_cast<int32_t>(width);
   flags.height = static_cast<int32_t>(height);

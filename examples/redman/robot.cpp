@@ -96,7 +96,7 @@ Report show_robot(const RobotFlags& flags) {
     if (!part.empty()) text += format("\n%s:\n", kLists[kind]) + part;
   }
   if (flags.check && lists[3].empty())
-    text += "\ncheck: it holds its home, reaches its ranges' ends and touches nothing of itself\n";
+    text += "\ncheck: it holds its home pose, reaches the ends of its ranges and does not touch itself\n";
   Json fingers = Json::array();
   for (int32_t i = 0; i < def.num_fingers; ++i) fingers.push_back(def.fingers[i].name);
   Json json = {{"name", def.name},        {"kind", kKinds[def.kind]}, {"links", def.num_links},
@@ -141,7 +141,7 @@ void add_robot(CLI::App& app, Run& run) {
   command->add_option("--kind", f.kind, "kind of robot: hand, arm or other; default: guessed");
   command->add_flag("--skip-meshes", f.skip_meshes, "drop meshes that cannot be read");
   command->add_flag("--mend-inertia", f.mend_inertia,
-                    "raise moments of inertia that break the triangle rule");
+                    "raise moments of inertia that violate the triangle inequality");
   command->add_option(
       "--density", f.density,
       "density of URDF links without <inertial>, kg/m3; default: they weigh nothing; for URDF only");

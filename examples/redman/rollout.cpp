@@ -68,7 +68,7 @@ class StepTable {
 void adopt_recording(const Recording& r, RolloutFlags& flags) {
   const auto count = static_cast<int32_t>(r.episodes());
   if (flags.seed_given)
-    throw Usage("--seed: a recorded rollout begins where it was recorded; it goes without a seed");
+    throw Usage("--seed: a recorded rollout starts from its recorded state, so it takes no seed");
   if (!flags.pool.envs_given) flags.pool.envs = r.pool.envs;
   if (!flags.episodes_given) flags.episodes = count;
   if (flags.episodes > count)
@@ -80,7 +80,8 @@ Report run_rollout(RolloutFlags flags) {
   choice.shield = read_shield_word(flags.shield);
   if (choice.shield.on && flags.noise > 0)
     throw Usage(
-        "--shield, --noise: noise on what the shield let through is beyond its proof; give one of them");
+        "--shield and --noise exclude each other: the shield proves nothing about actions to which noise is "
+        "added");
   if (choice.recording) adopt_recording(*choice.recording, flags);
   adopt_task(choice, flags.task_given, flags.sets, flags.pool);
   apply_sets(flags.sets, flags.pool, nullptr);

@@ -40,7 +40,7 @@ void take_limit_from_sets(std::vector<std::string>& sets, std::vector<std::strin
 
 int64_t whole_steps(double steps) {
   if (!(steps >= 1 && steps <= static_cast<double>(kMostExact)) || steps != std::floor(steps))
-    throw Usage("--steps " + number_text(steps) + ": not a whole number of 1 .. " +
+    throw Usage("--steps " + number_text(steps) + ": it is not a whole number of 1 .. " +
                 std::to_string(kMostExact));
   return static_cast<int64_t>(steps);
 }
@@ -51,7 +51,7 @@ void parse_shares(const std::string& text, TeachSettings& teach) {
   const auto share = [&](const std::string& part) {
     double v = 0;
     if (!read_number(part, &v) || !(v >= 0 && v <= 1))
-      throw Usage("--start-share " + text + ": not a share of 0 to 1, or two as 0.7..0");
+      throw Usage("--start-share " + text + ": it is not a share of 0 to 1, or a range such as 0.7..0");
     return v;
   };
   teach.start_share = share(text.substr(0, dots));
@@ -89,7 +89,7 @@ Trainer begin(TrainFlags flags, const Ranks* ranks) {
       run.agent.options.insert(run.agent.options.begin(), options.begin(), options.end());
   } else if (!std::all_of(flags.teach_given.begin(), flags.teach_given.end(),
                           [](const std::string& name) { return name.rfind("pretrain", 0) == 0; })) {
-    throw Usage("flags of a teacher without --from");
+    throw Usage("these flags need a teacher: give --from");
   }
   give_eyes(run.agent, run.pool);
   if (ranks) give_blocks(run);
@@ -108,8 +108,8 @@ Trainer begin(TrainFlags flags, const Ranks* ranks) {
 Trainer go_on(const TrainFlags& flags, const Ranks* ranks) {
   if (flags.others_given)
     throw Usage(
-        "--resume takes its settings from the folder; only --steps, --threads and --ranks may change: "
-        "to begin a new run with other settings from its policy, give --from FOLDER instead");
+        "--resume takes its settings from the folder; only --steps, --threads and --ranks may change. To "
+        "start a new run with other settings from its policy, give --from FOLDER instead");
   std::optional<RunFolder> folder;
   if (!ranks || ranks->first()) folder.emplace(RunFolder::go_on(flags.resume));
   RunSettings run = run_settings(flags.resume);
@@ -148,9 +148,11 @@ void say_steps(const Trainer& trainer) {
   const int64_t asked = trainer.settings().steps, epoch = trainer.steps_per_epoch();
   const int64_t left = std::max<int64_t>(0, asked - trainer.env_steps()), epochs = (left + epoch - 1) / epoch;
   if (left % epoch == 0) return;
-  std::fprintf(stderr, "--steps %lld: a run ends with an epoch, of up to %lld steps: it makes up to %lld\n",
-               static_cast<long long>(asked), static_cast<long long>(epoch),
-               static_cast<long long>(trainer.env_steps() + epochs * epoch));
+  std::fprintf(
+      stderr,
+      "--steps %lld: a run ends after a whole epoch of up to %lld steps, so it takes up to %lld steps\n",
+      static_cast<long long>(asked), static_cast<long long>(epoch),
+      static_cast<long long>(trainer.env_steps() + epochs * epoch));
 }
 
 Report run_train(const TrainFlags& flags) {

@@ -79,28 +79,30 @@ void Reader::bad(const char* why) const {
 
 void Reader::text(char* dst, size_t capacity) {
   const auto n = value<uint32_t>();
-  if (n >= capacity) bad("a text is too long");
+  if (n >= capacity) bad("a text in it is too long");
   bytes(dst, n);
   dst[n] = '\0';
 }
 
 uint32_t Reader::begin_file(const char magic[8], uint32_t newest_version) {
-  if (size_ - at_ < kFileHeader) bad("truncated header");
-  if (std::memcmp(view(8), magic, 8) != 0) bad("wrong magic: not a file of this kind");
+  if (size_ - at_ < kFileHeader) bad("its header is truncated");
+  if (std::memcmp(view(8), magic, 8) != 0) bad("it is not a file of this kind (wrong magic number)");
   const auto version = value<uint32_t>();
-  if (value<uint32_t>() != kByteOrder) bad("written with another byte order");
+  if (value<uint32_t>() != kByteOrder) bad("it was written with another byte order");
   if (version == 0 || version > newest_version)
-    fail(Code::kVersion, "%s: format version %u, this library reads 1 to %u", what_, version, newest_version);
+    fail(Code::kVersion, "%s: its format version is %u, but this library reads 1 to %u", what_, version,
+         newest_version);
   const auto length = value<uint64_t>();
-  if (length != size_ - at_) bad("truncated or with a tail: the length does not match");
+  if (length != size_ - at_) bad("it is truncated or has extra bytes: its length does not match its header");
   file_begin_ = at_;
   file_end_ = size_;
   for (size_t p = file_begin_; p < file_end_;) {
-    if (file_end_ - p < kSectionHeader) bad("truncated section");
+    if (file_end_ - p < kSectionHeader) bad("a section is truncated");
     const auto length = load<uint64_t>(data_ + p + 8);
-    if (length > file_end_ - p - kSectionHeader) bad("truncated section");
+    if (length > file_end_ - p - kSectionHeader) bad("a section is truncated");
     const auto n = static_cast<size_t>(length);
-    if (crc32(data_ + p + kSectionHeader, n) != load<uint32_t>(data_ + p + 4)) bad("checksum mismatch");
+    if (crc32(data_ + p + kSectionHeader, n) != load<uint32_t>(data_ + p + 4))
+      bad("its checksum does not match: the file is damaged");
     p += kSectionHeader + n;
   }
   return version;

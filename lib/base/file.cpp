@@ -64,7 +64,7 @@ class NoSizeSignal {
 };
 
 [[noreturn]] void too_long_path() {
-  fail(Code::kArgument, "path: longer than %d characters", PATH_MAX);
+  fail(Code::kArgument, "path: it is longer than %d characters", PATH_MAX);
 }
 [[noreturn]] void refuse(const char* path, const char* what, int why) {
   fail(Code::kIo, "%s: cannot %s: %s", path, what, std::strerror(why));
@@ -88,7 +88,7 @@ void find_target(const char* path, char target[PATH_MAX]) {
     }
     if (S_ISREG(st.st_mode)) return;
     if (!S_ISLNK(st.st_mode))
-      fail(Code::kIo, "%s: not a regular file: folders, devices and pipes are not replaced", path);
+      fail(Code::kIo, "%s: it is not a regular file; folders, devices and pipes are not replaced", path);
     char aim[PATH_MAX], next[PATH_MAX];
     const ssize_t n = readlink(target, aim, sizeof aim - 1);
     if (n < 0) refuse(path, "read the link", errno);
@@ -169,7 +169,7 @@ int open_regular(const char* path, uint64_t* size) {
   struct stat st {};
   if (fstat(fd, &st) != 0 || !S_ISREG(st.st_mode)) {
     close(fd);
-    fail(Code::kIo, "%s: not a regular file", path);
+    fail(Code::kIo, "%s: it is not a regular file", path);
   }
   *size = static_cast<uint64_t>(st.st_size);
   return fd;
@@ -189,7 +189,7 @@ void FileSource::read(uint64_t at, void* to, size_t count) const {
     const ssize_t n = pread(static_cast<int>(handle_), out, count, static_cast<off_t>(at));
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) refuse(path_, "read", errno);
-    if (n == 0) fail(Code::kIo, "%s: it has become shorter", path_);
+    if (n == 0) fail(Code::kIo, "%s: the file became shorter while it was read", path_);
     out += n, at += static_cast<uint64_t>(n), count -= static_cast<size_t>(n);
   }
 }

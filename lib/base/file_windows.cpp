@@ -43,8 +43,8 @@ class Handle {
 
 std::wstring wide(const char* path) {
   const int size = MultiByteToWideChar(CP_UTF8, MB_ERR_INVALID_CHARS, path, -1, nullptr, 0);
-  if (size < 1) fail(Code::kArgument, "path: not UTF-8");
-  if (size > PATH_MAX) fail(Code::kArgument, "path: longer than %d characters", PATH_MAX);
+  if (size < 1) fail(Code::kArgument, "path: it is not UTF-8");
+  if (size > PATH_MAX) fail(Code::kArgument, "path: it is longer than %d characters", PATH_MAX);
   std::wstring out(static_cast<size_t>(size), L'\0');
   MultiByteToWideChar(CP_UTF8, MB_ERR_INVALID_CHARS, path, -1, out.data(), size);
   out.pop_back();
@@ -56,7 +56,7 @@ void need_file_or_nothing(const char* path, const std::wstring& name) {
   const DWORD attributes = GetFileAttributesW(name.c_str());
   if (attributes != INVALID_FILE_ATTRIBUTES &&
       (attributes & (FILE_ATTRIBUTE_DIRECTORY | FILE_ATTRIBUTE_DEVICE)))
-    fail(Code::kIo, "%s: not a regular file: folders, devices and pipes are not replaced", path);
+    fail(Code::kIo, "%s: it is not a regular file; folders, devices and pipes are not replaced", path);
 }
 
 constexpr const wchar_t* kMark = L".tmp-";
@@ -98,7 +98,7 @@ HANDLE open_regular(const char* path, uint64_t* size) {
   const std::wstring name = wide(path);
   const DWORD attributes = GetFileAttributesW(name.c_str());
   if (attributes != INVALID_FILE_ATTRIBUTES && (attributes & FILE_ATTRIBUTE_DIRECTORY))
-    fail(Code::kIo, "%s: not a regular file", path);
+    fail(Code::kIo, "%s: it is not a regular file", path);
   const HANDLE f =
       CreateFileW(name.c_str(), GENERIC_READ, FILE_SHARE_READ | FILE_SHARE_WRITE | FILE_SHARE_DELETE, nullptr,
                   OPEN_EXISTING, FILE_ATTRIBUTE_NORMAL, nullptr);
@@ -106,7 +106,7 @@ HANDLE open_regular(const char* path, uint64_t* size) {
   LARGE_INTEGER length;
   if (GetFileType(f) != FILE_TYPE_DISK || !GetFileSizeEx(f, &length)) {
     CloseHandle(f);
-    fail(Code::kIo, "%s: not a regular file", path);
+    fail(Code::kIo, "%s: it is not a regular file", path);
   }
   *size = static_cast<uint64_t>(length.QuadPart);
   return f;
@@ -131,7 +131,7 @@ void FileSource::read(uint64_t at, void* to, size_t count) const {
     if (!ReadFile(reinterpret_cast<HANDLE>(handle_), out, most, &n, &place) &&
         GetLastError() != ERROR_HANDLE_EOF)
       refuse(path_, "read", GetLastError());
-    if (n == 0) fail(Code::kIo, "%s: it has become shorter", path_);
+    if (n == 0) fail(Code::kIo, "%s: the file became shorter while it was read", path_);
     out += n, at += n, count -= n;
   }
 }

@@ -57,7 +57,7 @@ void* host_alloc(const HostHooks& hooks, size_t bytes, size_t align) {
   if (bytes == 0) bytes = 1;
   if (align < sizeof(void*)) align = sizeof(void*);
   void* const p = hooks.alloc ? hooks.alloc(hooks.user, bytes, align) : aligned_block(bytes, align);
-  if (!p) fail(Code::kMemory, "out of memory: %zu bytes were refused", bytes);
+  if (!p) fail(Code::kMemory, "out of memory: %zu bytes could not be allocated", bytes);
   return p;
 }
 

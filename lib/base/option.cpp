@@ -62,10 +62,10 @@ void read_value(const OptionSpec& s, const char* key, const char* text, const ch
     while (first_end > text && first_end[-1] == ' ') --first_end;
     while (*second == ' ') ++second;
     good = read_number(text, first_end, &out->low) && read_number(second, end, &out->high);
-    if (good && !s.range) fail(Code::kArgument, "%s option %s: takes one number, no range", owner, key);
+    if (good && !s.range) fail(Code::kArgument, "%s option %s: it takes one number, not a range", owner, key);
   }
   if (!good && s.kind == OptionKind::kFlag)
-    fail(Code::kArgument, "%s option %s: '%s' is none of true, false, on, off, 1, 0", owner, key,
+    fail(Code::kArgument, "%s option %s: '%s' is not one of true, false, on, off, 1, 0", owner, key,
          Quoted(text).text);
   if (!good)
     fail(Code::kArgument, "%s option %s: '%s' is not a number%s", owner, key, Quoted(text).text,
@@ -105,7 +105,7 @@ void Options::make_index() {
 
 void Options::push(const Row& row) {
   if (rows_.size() == kMostIndexed)
-    fail(Code::kRange, "options: more than %d", static_cast<int>(kMostIndexed));
+    fail(Code::kRange, "options: there are more than %d", static_cast<int>(kMostIndexed));
   rows_.push_back(row);
   if (2 * rows_.size() > slots_.size()) return make_index();
   add_indexed(slots_.data(), slots_.size(), key_of(row), count() - 1);
@@ -160,9 +160,9 @@ void Options::assign(Row& row, const OptionInput& input, const char* owner) cons
   const OptionSpec& s = *row.spec;
   const char* key = key_of(row);
   if (s.kind == OptionKind::kText) {
-    if (!input.text) fail(Code::kArgument, "%s option %s: a text is needed", owner, key);
+    if (!input.text) fail(Code::kArgument, "%s option %s: its text is NULL", owner, key);
     if (std::strlen(input.text) > static_cast<size_t>(s.longest))
-      fail(Code::kRange, "%s option %s: longer than %d characters", owner, key, s.longest);
+      fail(Code::kRange, "%s option %s: its text is longer than %d characters", owner, key, s.longest);
     if (!is_clean_text(input.text))
       fail(Code::kArgument, "%s option %s: '%s' is not one line of UTF-8", owner, key,
            Quoted(input.text).text);
@@ -176,7 +176,7 @@ void Options::assign(Row& row, const OptionInput& input, const char* owner) cons
   OptionRange v{input.number, input.number};
   if (input.text) read_value(s, key, input.text, owner, &v);
   for (const double x : {v.low, v.high}) {
-    if (!std::isfinite(x)) fail(Code::kArgument, "%s option %s: the value is not finite", owner, key);
+    if (!std::isfinite(x)) fail(Code::kArgument, "%s option %s: its value is not finite", owner, key);
     if (x < s.low || x > s.high)
       fail(Code::kRange, "%s option %s: %s is outside [%s, %s]", owner, key, Number(x).text,
            Number(s.low).text, Number(s.high).text);
@@ -190,7 +190,7 @@ void Options::assign(Row& row, const OptionInput& input, const char* owner) cons
 }
 
 void Options::set(const OptionInput& input, const char* owner) {
-  if (!input.key) fail(Code::kArgument, "%s option: the key is NULL", owner);
+  if (!input.key) fail(Code::kArgument, "%s option: its key is NULL", owner);
   if (const OptionSpec* open = find_open(input.key)) return set_open(*open, input, owner);
   const int32_t i = find(input.key);
   if (i < 0) {
@@ -213,10 +213,10 @@ void Options::set(const OptionInput& input, const char* owner) {
 // What is set last stands last, whatever was set for the same name before.
 void Options::set_open(const OptionSpec& spec, const OptionInput& input, const char* owner) {
   if (std::strlen(input.key) >= kOptionTextSize)
-    fail(Code::kRange, "%s option %s: longer than %d characters", owner, Quoted(input.key).text,
+    fail(Code::kRange, "%s option %s: its text is longer than %d characters", owner, Quoted(input.key).text,
          kOptionTextSize - 1);
   if (!is_clean_text(input.key) || std::strchr(input.key, '='))
-    fail(Code::kArgument, "%s option %s: not a key", owner, Quoted(input.key).text);
+    fail(Code::kArgument, "%s option %s: it is not a key", owner, Quoted(input.key).text);
   Row row{&spec, {}, "", {}, {}, true};
   row.own_key.assign(input.key, input.key + std::strlen(input.key) + 1);
   assign(row, input, owner);

@@ -41,7 +41,7 @@ class Registry {
 
   // Error(kNotFound) with the nearest.
   int32_t find(const char* name) {
-    if (!name) fail(Code::kArgument, "%s: the name is NULL", Kind::kNoun);
+    if (!name) fail(Code::kArgument, "%s: its name is NULL", Kind::kNoun);
     const std::lock_guard<std::mutex> hold(lock_);
     const int32_t i = number_of(name);
     if (i >= 0) return i;
@@ -64,7 +64,7 @@ class Registry {
       const std::lock_guard<std::mutex> hold(lock_);
       for (const char* name : {thing.name, thing.alias})
         if (name && number_of(name) >= 0)
-          fail(Code::kArgument, "%s %s: the name is taken", Kind::kNoun, Quoted(name).text);
+          fail(Code::kArgument, "%s %s: the name is already used", Kind::kNoun, Quoted(name).text);
       return added_.add({copy, hooks});
     } catch (...) {
       host_delete(hooks, copy);
@@ -78,7 +78,7 @@ class Registry {
       const std::lock_guard<std::mutex> hold(lock_);
       added_.need(index);
       if (index < Kind::num_own())
-        fail(Code::kArgument, "%s %s is the library's own", Kind::kNoun, Kind::own(index).name);
+        fail(Code::kArgument, "%s %s belongs to the library", Kind::kNoun, Kind::own(index).name);
       added_.listed(index).listed = false;
     }
     release(index);

@@ -147,7 +147,7 @@ int32_t Workers::Round::ran() const {
 }
 
 void Workers::run_by_hook(int32_t n, ParallelBody body, void* context) {
-  if (n > kMost) fail(Code::kInternal, "workers: %d pieces, at most %d", n, kMost);
+  if (n > kMost) fail(Code::kInternal, "workers: there are %d pieces, but at most %d are allowed", n, kMost);
   Round& r = round_;
   r.n = n, r.body = body, r.context = context;
   for (auto& word : r.taken) word.store(0, std::memory_order_relaxed);
@@ -160,9 +160,10 @@ void Workers::run_by_hook(int32_t n, ParallelBody body, void* context) {
     thrown = true;
   }
   const int32_t left = r.close(), ran = r.ran();
-  if (thrown) fail(Code::kArgument, "an exception came out of the parallel hook");
-  if (left > 0) fail(Code::kState, "the parallel hook returned while %d of %d were still running", left, n);
-  if (ran < n) fail(Code::kState, "the parallel hook ran %d of %d", ran, n);
+  if (thrown) fail(Code::kArgument, "the parallel hook threw an exception");
+  if (left > 0)
+    fail(Code::kState, "the parallel hook returned while %d of %d pieces were still running", left, n);
+  if (ran < n) fail(Code::kState, "the parallel hook ran %d of %d pieces", ran, n);
   if (r.again >= 0) fail(Code::kState, "the parallel hook ran index %d twice", r.again.load());
   if (r.outside != Round::kNone)
     fail(Code::kState, "the parallel hook ran index %d, which is outside [0, %d)", r.outside.load(), n);
@@ -175,7 +176,7 @@ void Workers::run(int32_t n, ParallelBody body, void* context) {
     return;
   }
   if (shared_->pid != getpid())
-    fail(Code::kState, "worker threads do not survive fork: make the handle in the child");
+    fail(Code::kState, "worker threads do not survive fork: create the handle in the child process");
   {
     const std::lock_guard lock(shared_->mutex);
     shared_->n = n;

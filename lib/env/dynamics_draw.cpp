@@ -24,8 +24,7 @@ OptionRange factor_of(const Options& o, const char* key) {
   const OptionRange range = o.range(key);
   if (!range.drawn()) return {1, 1};  // the scene was made with that number
   const double middle = range.middle();
-  if (!(middle > 0))
-    fail(Code::kRange, "option %s: the middle of a range that is drawn must be above 0", key);
+  if (!(middle > 0)) fail(Code::kRange, "option %s: the middle of its range must be above 0", key);
   return {range.low / middle, range.high / middle};
 }
 

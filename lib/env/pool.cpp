@@ -129,7 +129,7 @@ void Pool::set_rank(int32_t rank, int32_t ranks) {
   const int32_t n = m.config.num_envs;
   for (int32_t i = 0; i < n; ++i)
     if (m.slots[i].episode.phase != Phase::kNew)
-      fail(Code::kState, "set_rank: only before the first reset; world %d has begun", i);
+      fail(Code::kState, "set_rank is allowed before the first reset only, and world %d has begun", i);
   for (int32_t i = 0; i < n; ++i)
     m.name_streams(i, m.config.seed,
                    static_cast<uint32_t>(rank) * static_cast<uint32_t>(n) + static_cast<uint32_t>(i));

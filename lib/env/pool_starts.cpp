@@ -17,7 +17,7 @@ void Pool::set_starts(const unsigned char* states, size_t state_bytes, int64_t c
   const HostScope scope(m.config.hooks);
   if (!(share >= 0 && share <= 1)) fail(Code::kRange, "share: %g is outside [0, 1]", share);
   if (share > 0 && (count < 0 ? m.starts.count : count) == 0)
-    fail(Code::kArgument, "share: %g, but there are no states to begin at", share);
+    fail(Code::kArgument, "share: it is %g, but there are no recorded states to start from", share);
   if (count < 0) {
     m.starts.share = share;
     return;
@@ -32,7 +32,8 @@ void Pool::set_starts(const unsigned char* states, size_t state_bytes, int64_t c
       const size_t size = in.left();
       const unsigned char* record = in.view(size);
       Reader world(record, size, "state");
-      if (m.check_world(world) != Phase::kRunning) fail(Code::kFormat, "state: of no running episode");
+      if (m.check_world(world) != Phase::kRunning)
+        fail(Code::kFormat, "state: it does not belong to a running episode");
       world.expect_end();
       if (i == 0) next.record_bytes = size, next.records.reserve(static_cast<size_t>(count) * size);
       next.records.insert(next.records.end(), record, record + size);

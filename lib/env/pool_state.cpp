@@ -49,7 +49,7 @@ void write_episode(const Episode& e, int32_t costs, Writer& out) {
 
 bool read_flag(Reader& in) {
   const auto flag = in.value<uint8_t>();
-  if (flag > 1) fail(Code::kFormat, "state: flag %u", flag);
+  if (flag > 1) fail(Code::kFormat, "state: a flag is %u, not 0 or 1", flag);
   return flag != 0;
 }
 
@@ -58,7 +58,8 @@ void read_episode(Reader& in, int32_t costs, Episode* e) {
   e->reset = in.value<Stream>();
   e->policy = in.value<Stream>();
   const auto phase = in.value<uint32_t>();
-  if (phase > static_cast<uint32_t>(Phase::kEnded)) fail(Code::kFormat, "state: phase %u", phase);
+  if (phase > static_cast<uint32_t>(Phase::kEnded))
+    fail(Code::kFormat, "state: a phase is %u, which does not exist", phase);
   e->phase = static_cast<Phase>(phase);
   e->step = in.value<int32_t>();
   e->terminated = read_flag(in);
@@ -73,10 +74,11 @@ void check_episode(const Episode& e, int32_t costs, int32_t max_steps) {
   const int32_t low = ended ? 1 : 0, high = e.phase == Phase::kNew ? 0 : max_steps - !ended;
   if (e.step < low || e.step > high)
     fail(Code::kFormat, "state: step %d is outside [%d, %d]", e.step, low, high);
-  if (ended != (e.terminated || e.truncated)) fail(Code::kFormat, "state: phase and end flags disagree");
+  if (ended != (e.terminated || e.truncated))
+    fail(Code::kFormat, "state: its phase and its end flags do not agree");
   bool good = std::abs(e.sum_reward) <= kMaxSum;
   for (int32_t k = 0; k < costs; ++k) good = good && std::abs(e.sum_cost[k]) <= kMaxSum;
-  if (!good) fail(Code::kFormat, "state: a sum is not finite, or beyond %g", kMaxSum);
+  if (!good) fail(Code::kFormat, "state: a sum is not finite, or its magnitude is above %g", kMaxSum);
 }
 
 }  // namespace
@@ -103,7 +105,7 @@ void Pool::Impl::read_world(int32_t env, Reader& in, bool keep_streams) {
 
 Phase Pool::Impl::check_world(Reader& in) {
   if (in.value<uint64_t>() != pristine_size || in.left() < pristine_size)
-    fail(Code::kFormat, "state: a world's record has another length");
+    fail(Code::kFormat, "state: the record of a world has a different length");
   slots[0].world->check(in);
   in.bytes(tried_state, task->state_bytes());
   Episode e{};
@@ -112,7 +114,7 @@ Phase Pool::Impl::check_world(Reader& in) {
   for (int32_t i = 0; i < obs_dim; ++i) {
     const auto x = in.value<float>();
     if (!std::isfinite(x) || std::abs(x) > obs_limit)
-      fail(Code::kFormat, "state: observation %d is not finite, or beyond %g", i,
+      fail(Code::kFormat, "state: observation %d is not finite, or its magnitude is above %g", i,
            static_cast<double>(obs_limit));
   }
   if (disturbance.any()) tried.read(in);
@@ -165,15 +167,15 @@ int32_t Pool::Impl::open_state(Reader& in, int32_t worlds, int32_t other, uint32
   char name[kTextSize];
   in.text(name, sizeof name);
   if (!same_name(name, info->name))
-    fail(Code::kFormat, "state: of task %s, the pool has %s", name, info->name);
+    fail(Code::kFormat, "state: it belongs to task %s, but the pool has task %s", name, info->name);
   if (in.value<int32_t>() != static_cast<int32_t>(slots[0].world->engine()))
-    fail(Code::kFormat, "state: of another physics engine");
+    fail(Code::kFormat, "state: it belongs to another physics engine");
   if (in.value<uint64_t>() != options_hash)
-    fail(Code::kFormat, "state: of a pool of task %s with other options", info->name);
-  if (in.value<uint64_t>() != layout) fail(Code::kFormat, "state: of another layout");
+    fail(Code::kFormat, "state: it belongs to a pool of task %s with other options", info->name);
+  if (in.value<uint64_t>() != layout) fail(Code::kFormat, "state: it has another layout");
   const auto count = in.value<int32_t>();
   if (count != worlds && count != other)
-    fail(Code::kFormat, "state: it holds %d worlds, %d are to be set", count, worlds);
+    fail(Code::kFormat, "state: it holds %d worlds, but %d are to be set", count, worlds);
   in.expect_end();
   in.need_section("WRLD");
   return count;
@@ -195,11 +197,13 @@ void Pool::set_state(int32_t env, const void* bytes, size_t size) {
     if (with_starts) {
       if (drawn.value<uint64_t>() != m.starts.mark)
         fail(Code::kFormat,
-             "state: its episodes begin at states of a recording that is not this pool's; set those first");
+             "state: its episodes start from states of a recording that this pool does not have; set them "
+             "first");
       share = drawn.value<double>();
-      if (!(share >= 0 && share <= 1)) fail(Code::kFormat, "state: a share of starts of %g", share);
+      if (!(share >= 0 && share <= 1))
+        fail(Code::kFormat, "state: a share of starts is %g, which is outside [0, 1]", share);
       if (drawn.left() != sizeof(Stream) * static_cast<size_t>(held))
-        fail(Code::kFormat, "state: not a stream of starts for each world");
+        fail(Code::kFormat, "state: it does not have a stream of starts for each world");
       drawn.view(sizeof(Stream) * static_cast<size_t>(before));
     }
   }
@@ -208,9 +212,10 @@ void Pool::set_state(int32_t env, const void* bytes, size_t size) {
   if (flagged) {
     flags.need_section("EPST");
     if (flags.left() != sizeof(uint32_t) * static_cast<size_t>(held))
-      fail(Code::kFormat, "state: not a status for each world's episode");
+      fail(Code::kFormat, "state: it does not have a status for the episode of each world");
     for (Reader all_flags = flags; all_flags.left() > 0;)
-      if (all_flags.value<uint32_t>() & ~kEveryStatus) fail(Code::kFormat, "state: an unknown status");
+      if (all_flags.value<uint32_t>() & ~kEveryStatus)
+        fail(Code::kFormat, "state: it has an unknown status bit");
     flags.view(sizeof(uint32_t) * static_cast<size_t>(before));
   }
 
@@ -329,12 +334,13 @@ void Pool::redraw(int32_t env, Stream& stream) {
 void Pool::need_same(const Pool& from, const char* name, const char* own) const {
   const Impl &m = *impl_, &f = *from.impl_;
   if (m.info != f.info)
-    fail(Code::kArgument, "%s: a pool of task %s, %s has %s", name, f.info->name, own, m.info->name);
+    fail(Code::kArgument, "%s: it is a pool of task %s, but %s has task %s", name, f.info->name, own,
+         m.info->name);
   if (m.slots[0].world->engine() != f.slots[0].world->engine())
-    fail(Code::kArgument, "%s: a pool of another physics engine", name);
+    fail(Code::kArgument, "%s: it is a pool of another physics engine", name);
   if (m.options_hash != f.options_hash)
-    fail(Code::kArgument, "%s: a pool of task %s with other options", name, m.info->name);
-  if (m.layout != f.layout) fail(Code::kArgument, "%s: a pool of another layout", name);
+    fail(Code::kArgument, "%s: it is a pool of task %s with other options", name, m.info->name);
+  if (m.layout != f.layout) fail(Code::kArgument, "%s: it is a pool with another layout", name);
 }
 
 void Pool::copy(int32_t env, const Pool& from, int32_t source) {

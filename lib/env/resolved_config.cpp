@@ -33,7 +33,7 @@ uint64_t ResolvedPoolConfig::hash_options() const {
 // A first look finds what chooses other rows (the robots); with those in place all keys must be known.
 void ResolvedPoolConfig::read_options(const PoolConfig& c) {
   if (c.num_options < 0 || (c.num_options > 0 && !c.options))
-    fail(Code::kArgument, "options: %d given, but no list", c.num_options);
+    fail(Code::kArgument, "options is NULL with num_options %d", c.num_options);
   const OptionSpec* specs = task_options(*info, &task_rows);
   Options first;
   first.add_table(specs, task_rows);

@@ -62,7 +62,8 @@ void release(int32_t index) {
 void register_task(const TaskInfo& info) {
   const std::lock_guard<std::mutex> hold(g_lock);
   if (info.num_costs < 1 || info.num_costs > kMaxTaskCosts)
-    fail(Code::kInternal, "task %s: %d cost columns", info.name, info.num_costs);
+    fail(Code::kInternal, "task %s: it has %d cost columns, which is outside the bounds", info.name,
+         info.num_costs);
   if (find(info.name) >= 0) fail(Code::kInternal, "task %s is registered twice", info.name);
   rows().add(&info);
 }
@@ -70,7 +71,7 @@ void register_task(const TaskInfo& info) {
 int32_t add_task(TaskSource* source) {
   const TaskInfo& info = source->info();
   const std::lock_guard<std::mutex> hold(g_lock);
-  if (find(info.name) >= 0) fail(Code::kArgument, "task %s: the name is taken", info.name);
+  if (find(info.name) >= 0) fail(Code::kArgument, "task %s: the name is already used", info.name);
   return rows().add(&info);
 }
 
@@ -78,7 +79,7 @@ void remove_task(int32_t index) {
   {
     const std::lock_guard<std::mutex> hold(g_lock);
     Rows::Row& row = rows().listed(index);
-    if (!row.what->source) fail(Code::kArgument, "task %s is the library's own", row.what->name);
+    if (!row.what->source) fail(Code::kArgument, "task %s belongs to the library", row.what->name);
     row.listed = false;
   }
   release(index);
@@ -101,7 +102,7 @@ const TaskInfo& task_at(int32_t index) {
 }
 
 int32_t task_find(const char* name) {
-  if (!name) fail(Code::kArgument, "task: the name is NULL");
+  if (!name) fail(Code::kArgument, "task: its name is NULL");
   const std::lock_guard<std::mutex> hold(g_lock);
   const int32_t i = find(name);
   if (i >= 0) return i;

@@ -45,12 +45,13 @@ void check(const ActorConfig& c) {
   if (c.repeat < 1) fail(Code::kRange, "action_repeat: %d is less than 1", c.repeat);
   if (decision % c.repeat)
     fail(Code::kArgument,
-         "action_repeat: the policy decides every %d control steps, which a step of %d of them does not "
-         "divide",
+         "action_repeat: the policy decides every %d control steps, which is not a multiple of a step of %d "
+         "of them",
          decision, c.repeat);
   for (int32_t k = 0; c.center && k < c.policy->view().action_dim(); ++k)
     if (!(std::abs(c.center[k]) <= 1))
-      fail(Code::kRange, "center: entry %d is %g, outside [-1, 1]", k, static_cast<double>(c.center[k]));
+      fail(Code::kRange, "center: entry %d is %g, which is outside [-1, 1]", k,
+           static_cast<double>(c.center[k]));
 }
 
 }  // namespace
@@ -220,7 +221,7 @@ void Actor::read_state(const void* bytes, size_t size) {
   in.begin_file(kMagic, kVersion);
   in.need_section("HEAD");
   if (in.value<uint64_t>() != fingerprint())
-    fail(Code::kFormat, "actor state: of an actor of another policy, other worlds or another step");
+    fail(Code::kFormat, "actor state: it belongs to an actor with another policy, number of worlds or step");
   in.expect_end();
   in.need_section("HELD");
   const auto stream = in.value<uint64_t>();

@@ -192,7 +192,7 @@ void mlp_init(const MlpShape& shape, Stream& stream, float last_layer_scale, flo
 
 void check_mlp_shape(const MlpShape& shape) {
   if (shape.num_hidden < 0 || shape.num_hidden > kMaxHidden)
-    fail(Code::kRange, "hidden: %d layers, 0 to %d are allowed", shape.num_hidden, kMaxHidden);
+    fail(Code::kRange, "hidden: there are %d layers, but 0 to %d are allowed", shape.num_hidden, kMaxHidden);
   for (int32_t l = 0; l < shape.num_hidden; ++l)
     if (shape.hidden[l] < 1 || shape.hidden[l] > kMaxWidth)
       fail(Code::kRange, "hidden: width %d is outside [1, %d]", shape.hidden[l], kMaxWidth);

@@ -139,7 +139,7 @@ void check_pointnet_shape(const PointNetShape& s) {
     fail(Code::kRange, "point classes: %d is outside [0, %d]", s.classes, kMaxClasses);
   check_mlp_shape(s.mlp);
   if (s.mlp.in != s.channels())
-    fail(Code::kRange, "encoder: %d inputs, not 3 and %d classes%s", s.mlp.in, s.classes,
+    fail(Code::kRange, "encoder: it has %d inputs, not 3 and %d classes%s", s.mlp.in, s.classes,
          s.color ? " and 3 of a colour" : "");
   if (!(s.range >= 1e-3f && s.range <= 1e3f))
     fail(Code::kRange, "point range: %g m is outside [0.001, 1000]", static_cast<double>(s.range));
@@ -155,14 +155,14 @@ void see_points(const PointNetShape& shape, const PointRows& clouds, size_t row,
 }
 
 void need_channels(const PointNetShape& s, const PointRows& clouds, size_t rows) {
-  if (s.color && !clouds.colors) fail(Code::kArgument, "point_color: NULL, but the encoder reads colours");
+  if (s.color && !clouds.colors) fail(Code::kArgument, "point_color is NULL, but the encoder reads colours");
   if (s.classes == 0) return;
   if (!clouds.classes)
-    fail(Code::kArgument, "point_class: NULL, but the encoder reads %d classes", s.classes);
+    fail(Code::kArgument, "point_class is NULL, but the encoder reads %d classes", s.classes);
   const size_t count = sz(s.points);
   for (size_t i = 0; i < rows * count; ++i)
     if (clouds.classes[i] >= s.classes)
-      fail(Code::kRange, "point_class: row %zu has class %d, outside [0, %d)", i / count,
+      fail(Code::kRange, "point_class: row %zu has class %d, which is outside [0, %d)", i / count,
            int32_t{clouds.classes[i]}, s.classes);
 }
 

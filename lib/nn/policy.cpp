@@ -253,10 +253,10 @@ void write_usual(Writer& out, const PolicyView& v) {
 
 void read_usual(Reader& in, PolicyView& v) {
   if (!in.find_later_section("SEEN")) return;
-  if (v.clip == 0) bad("it tells what is usual in a row, and has no normaliser");
+  if (v.clip == 0) bad("it has statistics of usual rows, but no normaliser");
   for (float* x : {&v.usual.rms, &v.usual.largest}) {
     *x = in.value<float>();
-    if (!(*x >= 1e-6f && *x <= 1e30f)) bad("what is usual in a row is out of range");
+    if (!(*x >= 1e-6f && *x <= 1e30f)) bad("its statistics of usual rows are out of range");
   }
   in.expect_end();
 }
@@ -314,10 +314,11 @@ void read_fields(Reader& in, PolicyParts& parts) {
   for (int32_t i = 0; i < 2 * v.num_fields; ++i) {
     const auto* stop =
         at < end ? static_cast<const char*>(std::memchr(at, 0, static_cast<size_t>(end - at))) : nullptr;
-    if (!stop || !is_clean_text(at) || (i % 2 == 0 && stop == at)) bad("a field's name or unit is no text");
+    if (!stop || !is_clean_text(at) || (i % 2 == 0 && stop == at))
+      bad("the name or unit of a field is not a text");
     at = stop + 1;
   }
-  if (at != end) bad("there are more texts than fields");
+  if (at != end) bad("it has more texts than fields");
 }
 
 void read_columns(Reader& in, PolicyParts& parts) {
@@ -327,17 +328,17 @@ void read_columns(Reader& in, PolicyParts& parts) {
   v.row_dim = in.value<int32_t>();
   if (v.row_dim <= entries || v.row_dim > kMaxInputs) bad("the observation's size is out of range");
   parts.num_ranges = in.value<int32_t>();
-  if (parts.num_ranges < 1 || parts.num_ranges > entries) bad("the ranges of entries are no such ranges");
+  if (parts.num_ranges < 1 || parts.num_ranges > entries) bad("its ranges of entries are not valid");
   parts.ranges = in.view(sz(parts.num_ranges) * sizeof(Pair));
   in.expect_end();
   int32_t count = 0;
   for (int32_t k = 0, last = -1; k < parts.num_ranges; ++k) {
     const auto [begin, end] = pair_of(parts.ranges, k);
-    if (begin <= last || end <= begin || end > v.row_dim) bad("the ranges of entries are no such ranges");
+    if (begin <= last || end <= begin || end > v.row_dim) bad("its ranges of entries are not valid");
     count += end - begin;
     last = end;
   }
-  if (count != entries) bad("the ranges of entries are not as many as the network's inputs");
+  if (count != entries) bad("its ranges of entries do not add up to the network's inputs");
 }
 
 PolicyParts read_parts(const void* bytes, size_t size) {
@@ -378,7 +379,7 @@ PolicyParts read_parts(const void* bytes, size_t size) {
   parts.colors = in.view(v.eyes.color ? v.eyes.row_points() : 0);
   in.expect_end();
   for (int32_t i = 0; v.eyes.classes && i < v.eyes.points; ++i)
-    if (parts.classes[i] >= v.eyes.classes) bad("a point of the example is of a class that there is not");
+    if (parts.classes[i] >= v.eyes.classes) bad("a point of its example has a class that does not exist");
   return parts;
 }
 
@@ -452,7 +453,7 @@ void try_example(const Kept& kept) {
            {kept.action}, kept.scratch);
   for (size_t j = 0; j < sz(v.action_dim()); ++j)
     if (!(std::abs(kept.action[j] - clip_unit(v.example_action[j])) <= kExampleTolerance))
-      bad("the network does not give the example action that is stored beside it");
+      bad("the network does not reproduce the example action that is stored with it");
 }
 
 }  // namespace

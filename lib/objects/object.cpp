@@ -168,7 +168,7 @@ struct Check {
       bad(Code::kRange, "the name %s is longer than %zu characters", Quoted(text).text, kLongest);
     for (const char* c = text; *c; ++c)
       if (!std::isalnum(static_cast<unsigned char>(*c)) && !std::strchr("_-+", *c))
-        bad(Code::kArgument, "the name %s is made of other than letters, digits, '_', '-' and '+'",
+        bad(Code::kArgument, "the name %s may contain only letters, digits, '_', '-' and '+'",
             Quoted(text).text);
   }
   void shape(const ObjectShape& s, int32_t i) const {
@@ -179,7 +179,7 @@ struct Check {
       if (s.points.count < 4 || s.points.count > kMaxHullPoints)
         bad(Code::kRange, "shapes[%d]: num_points %d is outside [4, %d]", i, s.points.count, kMaxHullPoints);
     } else if (sizes == 0) {
-      bad(Code::kArgument, "shapes[%d]: kind %d makes no object", i, static_cast<int>(s.kind));
+      bad(Code::kArgument, "shapes[%d]: kind %d cannot be part of an object", i, static_cast<int>(s.kind));
     }
     for (int k = 0; k < sizes; ++k) within(s.size[k], kLeast, kMost, what);
     std::snprintf(what, sizeof what, "shapes[%d]: place", i);
@@ -199,7 +199,7 @@ struct Check {
     if (!positive_definite(m)) bad(Code::kArgument, "the moment of inertia is not positive definite");
     const Vec3 p = principal_moments(m);
     if (p.x + p.y < p.z / kTriangle || p.y + p.z < p.x / kTriangle || p.z + p.x < p.y / kTriangle)
-      bad(Code::kArgument, "principal moments %g, %g, %g break the triangle rule", p.x, p.y, p.z);
+      bad(Code::kArgument, "principal moments %g, %g, %g violate the triangle inequality", p.x, p.y, p.z);
   }
 };
 
@@ -219,7 +219,7 @@ void check_object(const Object& object) {
     check.shape(object.shapes[i], i);
     touched = touched || object.shapes[i].collides;
   }
-  if (!touched) check.bad(Code::kArgument, "none of its shapes can be touched");
+  if (!touched) check.bad(Code::kArgument, "none of its shapes collides");
   check.inertia();
 }
 

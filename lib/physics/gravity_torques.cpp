@@ -30,7 +30,8 @@ void gravity_torques(const World& world, int32_t articulation, double* out) {
   const int32_t first = scene.link_offset[a];
   const Dynamics* dynamics = world.dynamics();
   if (count > kMaxCoords)
-    fail(Code::kUnsupported, "gravity_torques: %d links, at most %d", count, kMaxCoords);
+    fail(Code::kUnsupported, "gravity_torques: there are %d links, but at most %d are allowed", count,
+         kMaxCoords);
   std::fill_n(out, count, 0.0);
   if (!def.gravity) return;
   Behind behind[kMaxCoords];

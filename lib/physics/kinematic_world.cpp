@@ -6,7 +6,7 @@ namespace rdm {
 namespace {
 
 [[noreturn]] void refuse(const char* what) {
-  fail(Code::kUnsupported, "%s: this task moves its bodies itself", what);
+  fail(Code::kUnsupported, "%s is not possible: this task moves its bodies itself", what);
 }
 
 }  // namespace

@@ -23,10 +23,9 @@ void check_laws(EngineKind kind, const Scene& scene) {
   if (kind != EngineKind::kOde) return;
   for (const ContactLaw& law : scene.laws)
     if (law.soft() || law.torsional > 0 || law.rolling > 0)
-      fail(
-          Code::kUnsupported,
-          "engine ode knows of a contact law its restitution alone: not time_constant, torsional and rolling "
-          "friction; engine articulated does");
+      fail(Code::kUnsupported,
+           "engine ode supports only the restitution of a contact law; use engine articulated for "
+           "time_constant, torsional and rolling friction");
 }
 
 }  // namespace
@@ -201,7 +200,7 @@ void World::set_joints(int32_t articulation, const double* q, const double* qd) 
   const auto count = static_cast<int32_t>(scene_->def.articulations[a].links.size());
   for (int32_t i = 0; i < count; ++i)
     if (!std::isfinite(q[i]) || !bounded(qd[i], kRateBound))
-      fail(Code::kArgument, "set_joints: joint %d is not finite or faster than %g", i, kRateBound);
+      fail(Code::kArgument, "set_joints: joint %d is not finite, or faster than %g", i, kRateBound);
   for (int32_t i = 0; i < count; ++i) {
     const JointDef& joint = scene_->link(first + i).joint;
     q_[first + i] = std::clamp(q[i], joint.lower, joint.upper);
@@ -246,9 +245,11 @@ void World::place_joints(const double* q, const double* qd) {
 
 Motion World::checked_motion(const char* call, int32_t index, const Motion& m) {
   if (!bounded(m.X.p) || !bounded(m.v) || !bounded(m.w))
-    fail(Code::kArgument, "%s: motion %d is not finite or beyond %g", call, index, kStateBound);
+    fail(Code::kArgument, "%s: motion %d is not finite, or its magnitude is above %g", call, index,
+         kStateBound);
   const Quat q = normalized(m.X.q);
-  if (!is_unit(q)) fail(Code::kArgument, "%s: motion %d has no unit quaternion", call, index);
+  if (!is_unit(q))
+    fail(Code::kArgument, "%s: the quaternion of motion %d does not have length 1", call, index);
   return {{m.X.p, q}, m.v, m.w};
 }
 

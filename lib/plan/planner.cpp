@@ -109,7 +109,7 @@ void Planner::make_rollouts(const PlannerConfig& c) {
 void Planner::carve(Arena& arena) {
   if (int64_t{settings_.samples} * settings_.knots * action_dim_ > kMaxNumbers ||
       int64_t{settings_.horizon} * action_dim_ > kMaxNumbers)
-    fail(Code::kRange, "samples: %d times %d knots times %d actions are above %lld", settings_.samples,
+    fail(Code::kRange, "samples: %d times %d knots times %d actions is above %lld", settings_.samples,
          settings_.knots, action_dim_, static_cast<long long>(kMaxNumbers));
   // plan [horizon][action_dim], width: knots of one sample's noise
   const size_t n = sz(settings_.samples), dim = sz(action_dim_), plan = sz(settings_.horizon) * dim,
@@ -458,7 +458,7 @@ void Planner::read_state(const void* bytes, size_t size) {
   in.begin_file(kMagic, kVersion);
   in.need_section("HEAD");
   if (in.value<uint64_t>() != fingerprint())
-    fail(Code::kFormat, "planner state: of a planner of another task or other options");
+    fail(Code::kFormat, "planner state: it belongs to a planner with another task or other options");
   in.expect_end();
   in.need_section("PLAN");
   const auto stream = in.value<Stream>();

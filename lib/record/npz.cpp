@@ -206,7 +206,7 @@ void NpzReader::bad(const char* why) const {
 
 template <class T>
 T NpzReader::value(uint64_t at) const {
-  if (at > size_ || size_ - at < sizeof(T)) bad("the archive is cut off");
+  if (at > size_ || size_ - at < sizeof(T)) bad("the archive is truncated");
   T v;
   source_.read(at, &v, sizeof v);
   return v;
@@ -214,13 +214,13 @@ T NpzReader::value(uint64_t at) const {
 
 void NpzReader::read_directory() {
   // the end stands before a comment of up to 65,535 bytes, and after the 64-bit form of itself
-  if (size_ < kEndBytes) bad("not a whole archive (.npz)");
+  if (size_ < kEndBytes) bad("it is not a complete archive (.npz)");
   const uint64_t first = size_ - std::min(size_, kMostComment + kEndBytes);
   Vector<unsigned char> tail(static_cast<size_t>(size_ - first));
   source_.read(first, tail.data(), tail.size());
   size_t back = tail.size() - kEndBytes;
   while (std::memcmp(tail.data() + back, &kEnd, sizeof kEnd) != 0) {
-    if (back == 0) bad("not a whole archive (.npz)");
+    if (back == 0) bad("it is not a complete archive (.npz)");
     --back;
   }
   const uint64_t end = first + back;
@@ -228,17 +228,17 @@ void NpzReader::read_directory() {
            begin = value<uint32_t>(end + 16);
   if (end >= kLocatorBytes && value<uint32_t>(end - kLocatorBytes) == kLocator64) {
     const auto at = value<uint64_t>(end - kLocatorBytes + 8);
-    if (at > size_ || size_ - at < kEnd64Bytes) bad("the archive's directory is cut off");
+    if (at > size_ || size_ - at < kEnd64Bytes) bad("the archive's directory is truncated");
     count = value<uint64_t>(at + 32), bytes = value<uint64_t>(at + 40), begin = value<uint64_t>(at + 48);
   }
-  if (begin > size_ || size_ - begin < bytes) bad("the archive's directory is cut off");
+  if (begin > size_ || size_ - begin < bytes) bad("the archive's directory is truncated");
   uint64_t at = begin;
   for (uint64_t i = 0; i < std::min<uint64_t>(count, kMost); ++i) at = read_member(at, begin + bytes);
 }
 
 uint64_t NpzReader::read_member(uint64_t at, uint64_t end) {
-  if (end - at < kCentralBytes) bad("the archive's directory is cut off");
-  if (value<uint32_t>(at) != kCentral) bad("the archive's directory is spoiled");
+  if (end - at < kCentralBytes) bad("the archive's directory is truncated");
+  if (value<uint32_t>(at) != kCentral) bad("the archive's directory is damaged");
   Member m{};
   m.flags = value<uint16_t>(at + 8), m.method = value<uint16_t>(at + 10);
   m.checksum = value<uint32_t>(at + 16);
@@ -247,14 +247,14 @@ uint64_t NpzReader::read_member(uint64_t at, uint64_t end) {
                  comment = value<uint16_t>(at + 32);
   m.offset = value<uint32_t>(at + 42);
   at += kCentralBytes;
-  if (end - at < name + extra + comment) bad("the archive's directory is cut off");
+  if (end - at < name + extra + comment) bad("the archive's directory is truncated");
   Vector<char> here(static_cast<size_t>(name)), there(static_cast<size_t>(name));
   source_.read(at, here.data(), here.size());
   std::copy_n(here.data(), std::min(here.size(), sizeof m.name - 1), m.name);
   const uint64_t stop = at + name + extra;
   for (uint64_t e = at + name; stop - e >= 4;) {
     const auto id = value<uint16_t>(e), length = value<uint16_t>(e + 2);
-    if (length > stop - e - 4) bad("the archive's directory is spoiled");
+    if (length > stop - e - 4) bad("the archive's directory is damaged");
     uint64_t field = e + 4;
     for (uint64_t* v : {&m.size, &m.packed, &m.offset}) {
       if (id != kExtra64 || *v != kFull || field + 8 > e + 4 + length) continue;
@@ -266,9 +266,9 @@ uint64_t NpzReader::read_member(uint64_t at, uint64_t end) {
   // a member whose name is spoiled would be one that is missing: both places say it
   const uint64_t local = m.offset + kLocalBytes;
   if (local > size_ || size_ - local < name || value<uint16_t>(m.offset + 26) != name)
-    bad("the archive's directory is spoiled");
+    bad("the archive's directory is damaged");
   source_.read(local, there.data(), there.size());
-  if (here != there) bad("the archive's directory is spoiled");
+  if (here != there) bad("the archive's directory is damaged");
   members_.push_back(m);
   return stop + comment;
 }
@@ -287,28 +287,29 @@ void NpzReader::refuse(const char* name, const char* why) const {
 NpyArray NpzReader::read_header(const char* name, Place* place) const {
   const Member* m = find(name);
   if (!m) refuse(name, "is missing");
-  if (m->method != 0 || (m->flags & kEncrypted)) refuse(name, "is packed: write the file with numpy.savez");
+  if (m->method != 0 || (m->flags & kEncrypted))
+    refuse(name, "is compressed: write the file with numpy.savez");
   if (m->size != m->packed || m->offset > size_ || size_ - m->offset < kLocalBytes)
-    refuse(name, "is cut off");
-  if (value<uint32_t>(m->offset) != kLocal) refuse(name, "is not where it should be");
+    refuse(name, "is truncated");
+  if (value<uint32_t>(m->offset) != kLocal) refuse(name, "is not where the archive's directory says");
   const uint64_t begin =
       m->offset + kLocalBytes + value<uint16_t>(m->offset + 26) + value<uint16_t>(m->offset + 28);
-  if (begin > size_ || size_ - begin < m->size) refuse(name, "is cut off");
-  if (m->size > SIZE_MAX / 2) refuse(name, "is longer than this machine's memory can be");
+  if (begin > size_ || size_ - begin < m->size) refuse(name, "is truncated");
+  if (m->size > SIZE_MAX / 2) refuse(name, "is longer than the memory of this machine can be");
   const auto size = static_cast<size_t>(m->size);
   unsigned char head[kHead];
-  if (size < kHead) refuse(name, "is no array of numpy, version 1");
+  if (size < kHead) refuse(name, "is not a numpy array of format version 1");
   source_.read(begin, head, kHead);
-  if (std::memcmp(head, kMagic, 8) != 0) refuse(name, "is no array of numpy, version 1");
+  if (std::memcmp(head, kMagic, 8) != 0) refuse(name, "is not a numpy array of format version 1");
   const size_t length = head[8] + 256u * head[9];
-  if (length > size - kHead) refuse(name, "ends in its header");
+  if (length > size - kHead) refuse(name, "ends within its header");
   Vector<char> literal(length);
   source_.read(begin + kHead, literal.data(), length);
   Literal text(literal.data(), length);
   NpyArray a;
-  if (!parse_header(text, &a)) refuse(name, "has a header that is not read here");
-  if (a.item_bytes() == 0) refuse(name, "has a type that is not read here");
-  if (a.bytes() != size - kHead - length) refuse(name, "is not as long as it says");
+  if (!parse_header(text, &a)) refuse(name, "has a header that cannot be read");
+  if (a.item_bytes() == 0) refuse(name, "has a type that cannot be read");
+  if (a.bytes() != size - kHead - length) refuse(name, "does not have the length that its header says");
   *place = {begin, size, kHead + length, m->checksum};
   return a;
 }
@@ -324,7 +325,8 @@ NpyArray NpzReader::array(const char* name) {
   Vector<unsigned char>().swap(bytes_);  // the last one's memory first
   bytes_.resize(place.size);
   source_.read(place.begin, bytes_.data(), place.size);
-  if (crc32(bytes_.data(), place.size) != place.checksum) refuse(name, "is spoiled: its checksum differs");
+  if (crc32(bytes_.data(), place.size) != place.checksum)
+    refuse(name, "is damaged: its checksum does not match");
   a.data = bytes_.data() + place.head;
   return a;
 }

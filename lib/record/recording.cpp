@@ -79,7 +79,7 @@ Recording::Recording(const RecordingSpec& spec, int64_t capacity) : spec_(spec) 
 
 void Recording::reserve(size_t rows, size_t states) {
   if (rows > static_cast<size_t>(kMaxRecordingRows))
-    fail(Code::kRange, "rows: more than 2^%d", sizeof(size_t) == 8 ? 40 : 31);
+    fail(Code::kRange, "rows: there are more than 2^%d", sizeof(size_t) == 8 ? 40 : 31);
   room(obs_, rows * obs_dim());
   room(action_, rows * action_dim());
   room(label_, rows * action_dim());
@@ -129,11 +129,11 @@ void Recording::check(const RecordingRows& in) const {
   check_range("rows", in.rows, 0, kMaxRecordingRows);
   check_range("num_states", in.num_states, 0, in.rows);
   const auto n = static_cast<size_t>(in.rows);
-  if (n && !in.obs) fail(Code::kArgument, "obs: NULL");
-  if (n && !in.action) fail(Code::kArgument, "action: NULL");
-  if (n && spec_.num_points && !in.points) fail(Code::kArgument, "points: NULL");
+  if (n && !in.obs) fail(Code::kArgument, "obs is NULL");
+  if (n && !in.action) fail(Code::kArgument, "action is NULL");
+  if (n && spec_.num_points && !in.points) fail(Code::kArgument, "points is NULL");
   if (n && !spec_.num_points && in.points) fail(Code::kArgument, "points: this recording has none");
-  if (n && spec_.point_color && !in.point_color) fail(Code::kArgument, "point_color: NULL");
+  if (n && spec_.point_color && !in.point_color) fail(Code::kArgument, "point_color is NULL");
   if (n && !spec_.point_color && in.point_color)
     fail(Code::kArgument, "point_color: this recording has none");
   check_finite("obs", in.obs, n, obs_dim());
@@ -146,15 +146,15 @@ void Recording::check(const RecordingRows& in) const {
   check_flags("success", in.success, n);
   for (size_t i = 0; in.episode && i < n; ++i)
     if (in.episode[i] < 0 || in.episode[i] >= in.rows)
-      fail(Code::kArgument, "episode: row %zu has %lld, outside [0, rows)", i,
+      fail(Code::kArgument, "episode: row %zu has %lld, which is outside [0, rows)", i,
            static_cast<long long>(in.episode[i]));
   if (in.num_states == 0) return;
   if (spec_.state_bytes == 0) fail(Code::kArgument, "num_states: this recording has no states");
-  if (!in.state_row || !in.state) fail(Code::kArgument, "state_row, state: NULL");
+  if (!in.state_row || !in.state) fail(Code::kArgument, "state_row or state is NULL");
   for (int64_t i = 0; i < in.num_states; ++i)
     if (in.state_row[i] < 0 || in.state_row[i] >= in.rows ||
         (i > 0 && in.state_row[i] <= in.state_row[i - 1]))
-      fail(Code::kArgument, "state_row: entry %lld is no row behind the one before",
+      fail(Code::kArgument, "state_row: entry %lld is not a row after the one before it",
            static_cast<long long>(i));
 }
 
@@ -191,16 +191,20 @@ void Recording::append(const RecordingRows& in) {
 
 void Recording::append_all(const Recording& other) {
   const RecordingSpec& o = other.spec_;
-  if (&other == this) fail(Code::kArgument, "other: the recording itself");
+  if (&other == this) fail(Code::kArgument, "other: it is the recording itself");
   if (o.obs_dim != spec_.obs_dim || o.action_dim != spec_.action_dim || o.cost_dim != spec_.cost_dim)
-    fail(Code::kArgument, "other: its rows have %d observations, %d actions, %d costs, these %d, %d, %d",
+    fail(Code::kArgument,
+         "other: its rows have %d observations, %d actions and %d costs, but these have %d, %d and %d",
          o.obs_dim, o.action_dim, o.cost_dim, spec_.obs_dim, spec_.action_dim, spec_.cost_dim);
   if (o.num_points != spec_.num_points)
-    fail(Code::kArgument, "other: its clouds have %d points, these %d", o.num_points, spec_.num_points);
-  if (o.point_color != spec_.point_color) fail(Code::kArgument, "other: one of the two has no colours");
-  if (o.layout_hash != spec_.layout_hash) fail(Code::kArgument, "other: of another layout");
+    fail(Code::kArgument, "other: its clouds have %d points, but these have %d", o.num_points,
+         spec_.num_points);
+  if (o.point_color != spec_.point_color)
+    fail(Code::kArgument, "other: one of the two recordings has no colours");
+  if (o.layout_hash != spec_.layout_hash) fail(Code::kArgument, "other: it has another layout");
   if (other.num_states() > 0 && o.state_bytes != spec_.state_bytes)
-    fail(Code::kArgument, "other: its states have %zu bytes, these %zu", o.state_bytes, spec_.state_bytes);
+    fail(Code::kArgument, "other: its states have %zu bytes, but these have %zu", o.state_bytes,
+         spec_.state_bytes);
   append(other.view());
 }
 

@@ -60,7 +60,7 @@ class Columns {
   static void check(const NpyArray& a, const char* name, const char* type, int32_t dims, uint64_t rows,
                     uint64_t width) {
     if (!a.is(type, dims) || a.shape[0] != rows || (dims > 1 && a.shape[1] != width))
-      fail(Code::kFormat, "%s: array %s has another type or shape", kWhat, name);
+      fail(Code::kFormat, "%s: array %s has an unexpected type or shape", kWhat, name);
   }
   NpzReader& in_;
 };
@@ -68,7 +68,7 @@ class Columns {
 void read_text(NpzReader& in, const char* name, char* out, size_t capacity) {
   const NpyArray head = in.header(name);
   if (head.dims != 0 || std::strncmp(head.type, "|S", 2) != 0 || head.item_bytes() >= capacity)
-    fail(Code::kFormat, "%s: array %s is no text of at most %zu bytes", kWhat, name, capacity - 1);
+    fail(Code::kFormat, "%s: array %s is not a text of at most %zu bytes", kWhat, name, capacity - 1);
   const NpyArray a = in.array(name);
   std::memcpy(out, a.data, a.item_bytes());
   out[a.item_bytes()] = '\0';
@@ -78,7 +78,7 @@ void read_text(NpzReader& in, const char* name, char* out, size_t capacity) {
 int32_t width_of(const NpzReader& in, const char* name, uint64_t least, uint64_t most) {
   const NpyArray a = in.header(name);
   if (!a.is("<f4", 2) || a.shape[1] < least || a.shape[1] > most)
-    fail(Code::kFormat, "%s: array %s has another type or shape", kWhat, name);
+    fail(Code::kFormat, "%s: array %s has an unexpected type or shape", kWhat, name);
   return static_cast<int32_t>(a.shape[1]);
 }
 
@@ -94,7 +94,7 @@ void read_states(NpzReader& in, uint64_t rows, States* out) {
   if (!in.has(name)) return;
   const NpyArray a = in.header(name);
   if (!a.is("|u1", 2) || a.shape[0] > rows || a.shape[1] > (1u << 30))
-    fail(Code::kFormat, "%s: array %s has another type or shape", kWhat, name);
+    fail(Code::kFormat, "%s: array %s has an unexpected type or shape", kWhat, name);
   out->width = static_cast<size_t>(a.shape[1]);
   const Columns columns(in);
   if (own)
@@ -103,7 +103,7 @@ void read_states(NpzReader& in, uint64_t rows, States* out) {
     for (uint64_t i = 0; i < rows; ++i) out->row.push_back(static_cast<int64_t>(i));
   else
     columns.take("episode_begin", "<i8", 1, a.shape[0] + 1, 0, out->row), out->row.pop_back();
-  if (out->row.size() != a.shape[0]) fail(Code::kFormat, "%s: not a row for each state", kWhat);
+  if (out->row.size() != a.shape[0]) fail(Code::kFormat, "%s: it does not have a row for each state", kWhat);
   columns.take(name, "|u1", 2, a.shape[0], a.shape[1], out->bytes);
 }
 
@@ -166,15 +166,16 @@ Recording* Recording::read(const ByteSource& source, const HostHooks& hooks) {
   if (in.has("format")) {
     read_text(in, "format", format, sizeof format);
     if (std::strncmp(format, kFormat, std::strlen(kFormat) - 1) != 0)
-      fail(Code::kFormat, "%s: its format is '%s'", kWhat, Quoted(format).text);
+      fail(Code::kFormat, "%s: its format is '%s', which this library does not read", kWhat,
+           Quoted(format).text);
     if (std::strcmp(format, kFormat) != 0)
-      fail(Code::kVersion, "%s: its format '%s' is newer", kWhat, Quoted(format).text);
+      fail(Code::kVersion, "%s: its format, '%s', is newer than this library", kWhat, Quoted(format).text);
   }
   RecordingSpec spec;
   if (in.has("task")) read_text(in, "task", spec.task, sizeof spec.task);
   if (in.has("layout_hash")) {
     if (!in.header("layout_hash").is("<u8", 0))
-      fail(Code::kFormat, "%s: array layout_hash has another type or shape", kWhat);
+      fail(Code::kFormat, "%s: array layout_hash has an unexpected type or shape", kWhat);
     const NpyArray a = in.array("layout_hash");
     std::memcpy(&spec.layout_hash, a.data, sizeof spec.layout_hash);
   }
@@ -182,12 +183,12 @@ Recording* Recording::read(const ByteSource& source, const HostHooks& hooks) {
   spec.action_dim = width_of(in, "action", 1, 1024);
   spec.cost_dim = width_of(in, "cost", 0, 16);
   const uint64_t n = in.header("obs").shape[0];
-  if (n > static_cast<uint64_t>(kMaxRecordingRows)) fail(Code::kFormat, "%s: too many rows", kWhat);
+  if (n > static_cast<uint64_t>(kMaxRecordingRows)) fail(Code::kFormat, "%s: it has too many rows", kWhat);
   if (in.has("points")) {
     const NpyArray a = in.header("points");
     if (!a.is("<i2", 3) || a.shape[0] != n || a.shape[1] < 1 || a.shape[1] > kMaxRecordedPoints ||
         a.shape[2] != 3)
-      fail(Code::kFormat, "%s: array points has another type or shape", kWhat);
+      fail(Code::kFormat, "%s: array points has an unexpected type or shape", kWhat);
     spec.num_points = static_cast<int32_t>(a.shape[1]);
     spec.point_color = in.has("point_color");
   }

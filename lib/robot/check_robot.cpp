@@ -79,7 +79,8 @@ struct Check {
     for (int i = 0; i < 6; ++i) within(moment[i], -kMost, kMost, row, "moment of inertia");
     if (mass == 0) {
       for (int i = 0; i < 6; ++i)
-        if (moment[i] != 0) bad(Code::kArgument, "%s: moments of inertia without mass", Quoted(row).text);
+        if (moment[i] != 0)
+          bad(Code::kArgument, "%s: it has moments of inertia, but no mass", Quoted(row).text);
       if (!may_be_none) bad(Code::kRange, "%s: the mass must be above 0", Quoted(row).text);
       return;
     }
@@ -91,31 +92,31 @@ struct Check {
       bad(Code::kArgument, "%s: the moment of inertia is not positive definite", Quoted(row).text);
     const Vec3 p = principal_moments(m);
     if (p.x + p.y < p.z / kTriangle || p.y + p.z < p.x / kTriangle || p.z + p.x < p.y / kTriangle)
-      bad(Code::kArgument, "%s: principal moments %g, %g, %g break the triangle rule", Quoted(row).text, p.x,
-          p.y, p.z);
+      bad(Code::kArgument, "%s: principal moments %g, %g, %g violate the triangle inequality",
+          Quoted(row).text, p.x, p.y, p.z);
   }
 
   void links() const {
     if (robot.links.count < 1 || robot.links.count > kMaxRobotLinks)
-      bad(Code::kRange, "%d links are outside [1, %d]", robot.links.count, kMaxRobotLinks);
+      bad(Code::kRange, "the number of links, %d, is outside [1, %d]", robot.links.count, kMaxRobotLinks);
     for (int32_t i = 0; i < robot.links.count; ++i) {
       const RobotLink& l = robot.links[i];
       name(l.name, "link");
       name(l.joint, "joint");
       for (int32_t k = 0; k < i; ++k) {
         if (same_name(robot.links[k].name, l.name))
-          bad(Code::kArgument, "link %s stands twice", Quoted(l.name).text);
+          bad(Code::kArgument, "link %s occurs twice", Quoted(l.name).text);
         if (same_name(robot.links[k].joint, l.joint))
-          bad(Code::kArgument, "joint %s stands twice", Quoted(l.joint).text);
+          bad(Code::kArgument, "joint %s occurs twice", Quoted(l.joint).text);
       }
       if (l.parent < -1 || l.parent >= i)
-        bad(Code::kRange, "%s: parent %d does not stand before row %d", Quoted(l.name).text, l.parent, i);
+        bad(Code::kRange, "%s: parent %d does not come before row %d", Quoted(l.name).text, l.parent, i);
       within(l.p_PL, l.name, "position");
       within(l.rpy_PL, l.name, "rotation");
       unit(l.q_PL, l.name);
       inertia(l.name, l.mass, l.com, l.moment, true);
       if (l.kind != JointKind::kRevolute && l.kind != JointKind::kPrismatic)
-        bad(Code::kRange, "%s: a joint of no known kind", Quoted(l.joint).text);
+        bad(Code::kRange, "%s: the kind of the joint is unknown", Quoted(l.joint).text);
       unit(l.axis, l.joint, "axis");
       within(l.lower, -kMost, kMost, l.joint, "lower limit");
       within(l.upper, -kMost, kMost, l.joint, "upper limit");
@@ -138,7 +139,7 @@ struct Check {
       name(s.name, "shape");
       for (int32_t k = 0; k < i; ++k)
         if (same_name(robot.shapes[k].name, s.name))
-          bad(Code::kArgument, "shape %s stands twice", Quoted(s.name).text);
+          bad(Code::kArgument, "shape %s occurs twice", Quoted(s.name).text);
       index(s.link, kRootLink, robot.links.count, s.name, "link");
       pose({s.p, s.q}, s.name);
       const int sizes = num_sizes(s.kind);
@@ -177,25 +178,27 @@ struct Check {
       const char* row = robot.links[c.link].joint;
       index(c.driver, 0, n, row, "curve: the driver");
       if (c.knots < 2 || c.knots > kMaxKnots)
-        bad(Code::kRange, "%s: %d knots are outside [2, %d]", Quoted(row).text, c.knots, kMaxKnots);
+        bad(Code::kRange, "%s: the number of knots, %d, is outside [2, %d]", Quoted(row).text, c.knots,
+            kMaxKnots);
       for (int32_t k = 0; k < c.knots; ++k) {
         within(c.command[k], -1, 1, row, "command of a knot");
         within(c.angle[k], robot.links[c.link].lower, robot.links[c.link].upper, row, "angle of a knot");
         if (k > 0 && !(c.command[k] > c.command[k - 1]))
-          bad(Code::kArgument, "%s: commands of knots do not ascend", Quoted(row).text);
+          bad(Code::kArgument, "%s: the commands of its knots are not ascending", Quoted(row).text);
       }
-      if (robot.coupled(c.link)) bad(Code::kArgument, "%s: coupled, and with a curve", Quoted(row).text);
+      if (robot.coupled(c.link))
+        bad(Code::kArgument, "%s: it cannot both be coupled and have a curve", Quoted(row).text);
       for (int32_t k = 0; k < i; ++k)
         if (robot.curves[k].link == c.link) bad(Code::kArgument, "%s has two curves", Quoted(row).text);
     }
     if (robot.passive && (robot.commands.count > 0 || robot.curves.count > 0))
-      bad(Code::kArgument, "it takes no commands, but has rows of commands or curves");
+      bad(Code::kArgument, "it takes no commands, but has commands or curves");
     if (robot.passive && robot.kind != RobotKind::kOther)
-      bad(Code::kArgument, "a hand or an arm takes commands");
+      bad(Code::kArgument, "a hand or an arm must take commands");
     for (int32_t i = 0; i < robot.commands.count; ++i) {
       index(robot.commands[i], 0, n, "commands", "link");
       if (robot.action_of(robot.commands[i]) != i)
-        bad(Code::kArgument, "commands: %s stands twice, or follows another joint",
+        bad(Code::kArgument, "commands: %s occurs twice, or follows another joint",
             Quoted(robot.links[robot.commands[i]].joint).text);
     }
     for (const RobotCurve& c : robot.curves)
@@ -205,13 +208,14 @@ struct Check {
     pose_of(robot.home, "home");
     pose_of(robot.poses.folded, "folded");
     if (robot.poses.closed.count != 0 && robot.poses.closed.count != robot.num_actuated())
-      bad(Code::kRange, "closed: %d commands of %d", robot.poses.closed.count, robot.num_actuated());
+      bad(Code::kRange, "closed: it has %d commands, but the robot has %d", robot.poses.closed.count,
+          robot.num_actuated());
     for (const float a : robot.poses.closed) within(static_cast<double>(a), -1, 1, "closed", "command");
   }
 
   void pose_of(const Table<double>& q, const char* what) const {
     if (q.count != 0 && q.count != robot.links.count)
-      bad(Code::kRange, "%s: %d joints of %d", what, q.count, robot.links.count);
+      bad(Code::kRange, "%s: it has %d joints, but the robot has %d", what, q.count, robot.links.count);
     for (int32_t i = 0; i < q.count; ++i)
       within(q[i], robot.links[i].lower, robot.links[i].upper, robot.links[i].joint, what);
   }
@@ -219,7 +223,7 @@ struct Check {
   void parts() const {
     const int32_t n = robot.links.count;
     if (robot.fingers.count != 0 && robot.fingers.count != robot.tips.count)
-      bad(Code::kArgument, "%d fingers, but %d tips", robot.fingers.count, robot.tips.count);
+      bad(Code::kArgument, "it has %d fingers, but %d tips", robot.fingers.count, robot.tips.count);
     for (const RobotTip& t : robot.tips) {
       index(t.link, 0, n, "tip", "link");
       within(t.p_L, robot.links[t.link].name, "tip");
@@ -230,7 +234,8 @@ struct Check {
       index(f.first, 0, robot.tips[i].link + 1, f.name, "first link");
       for (int32_t link = robot.tips[i].link; link > f.first; --link)
         if (robot.links[link].parent < f.first)
-          bad(Code::kArgument, "finger %s: link %s between its first and its tip is not its own",
+          bad(Code::kArgument,
+              "finger %s: link %s, between its first link and its tip, belongs to another finger",
               Quoted(f.name).text, Quoted(robot.links[link].name).text);
       for (const int32_t role : {f.lateral, f.proximal, f.middle})
         if (role != -1) index(role, f.first, robot.tips[i].link + 1, f.name, "a joint of it");
@@ -242,13 +247,14 @@ struct Check {
       unit(robot.n_palm, "palm", "normal");
       unit(robot.z_palm, "palm", "direction of the fingers");
       if (std::fabs(dot(robot.n_palm, robot.z_palm)) > 1e-3)
-        bad(Code::kArgument, "palm: the direction of the fingers is not in its plane");
+        bad(Code::kArgument, "palm: the direction of the fingers is not in the palm's plane");
     } else if (robot.kind == RobotKind::kHand) {
-      bad(Code::kArgument, "a hand has a palm");
+      bad(Code::kArgument, "a hand must have a palm");
     }
     if (robot.kind == RobotKind::kHand && robot.fingers.count == 0)
-      bad(Code::kArgument, "a hand has fingers");
-    if (robot.kind == RobotKind::kArm && robot.flange == kNoLink) bad(Code::kArgument, "an arm has a flange");
+      bad(Code::kArgument, "a hand must have fingers");
+    if (robot.kind == RobotKind::kArm && robot.flange == kNoLink)
+      bad(Code::kArgument, "an arm must have a flange");
     if (robot.flange != kNoLink) index(robot.flange, 0, n, "flange", "link");
     pose(robot.X_LF, "flange");
     pose(robot.X_RM, "mount");

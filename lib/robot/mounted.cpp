@@ -188,12 +188,12 @@ Pose mounted_root(const Robot& hand, const Mounting& mounting) {
 
 RobotCopy make_mounted(const Robot& arm, const Robot& hand, const Mounting& mounting) {
   if (arm.flange == kNoLink || arm.kind != RobotKind::kArm)
-    fail(Code::kUnsupported, "robot %s is no arm: it has no flange", arm.name);
+    fail(Code::kUnsupported, "robot %s is not an arm: it has no flange", arm.name);
   if (hand.kind != RobotKind::kHand || hand.palm == kNoLink)
-    fail(Code::kUnsupported, "robot %s is no hand", hand.name);
+    fail(Code::kUnsupported, "robot %s is not a hand", hand.name);
   if (arm.links.count + hand.links.count > kMaxRobotLinks)
-    fail(Code::kUnsupported, "%s on %s: %d links, at most %d", hand.name, arm.name,
-         arm.links.count + hand.links.count, kMaxRobotLinks);
+    fail(Code::kUnsupported, "%s on %s: together they have %d links, but at most %d are allowed", hand.name,
+         arm.name, arm.links.count + hand.links.count, kMaxRobotLinks);
   return Joiner(arm, hand, arm.X_LF * mounted_root(hand, mounting)).join();
 }
 

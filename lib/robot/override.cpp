@@ -45,7 +45,7 @@ LinkDef& find(ArticulationDef* def, const char* kind, const char* prefix, const 
 
 void need_value(const char* owner, double value) {
   if (!(value >= 0 && std::isfinite(value)))
-    fail(Code::kRange, "%s: %g is not a number from 0 up", owner, value);
+    fail(Code::kRange, "%s: %g is not a number of 0 or more", owner, value);
 }
 
 void scale_inertia(Inertia* inertia, double factor) {

@@ -12,7 +12,8 @@ namespace rdm {
 Guards::Guards(int32_t worlds, int32_t dim)
     : worlds_(worlds), dim_(dim), origin_(width(), 0.0f), found_(width()) {
   if (dim > kMostEntries)
-    fail(Code::kUnsupported, "shield: actions of %d entries, at most %d", dim, kMostEntries);
+    fail(Code::kUnsupported, "shield: an action has %d entries, but at most %d are allowed", dim,
+         kMostEntries);
   rows_.reserve(kMostGuards);
 }
 
@@ -33,13 +34,14 @@ bool Guards::keepable(const HalfSpace* rows, int32_t count) const {
 
 void Guards::add(int32_t column, const float* normal, float bound) {
   check_half_space({normal, bound}, dim_, "guard");
-  if (count() == kMostGuards) fail(Code::kRange, "guard: there are %d already", kMostGuards);
+  if (count() == kMostGuards)
+    fail(Code::kRange, "guard: there are already %d guards, the most that are allowed", kMostGuards);
   HalfSpace rows[kMostGuards];
   for (int32_t env = 0; env < (column < 0 ? worlds_ : 1); ++env) {
     const int32_t n = half_spaces(env, rows);
     rows[n] = {normal, bound};
     if (!keepable(rows, n + 1))
-      fail(Code::kArgument, "guard: no action of world %d keeps it and the %d before", env, n);
+      fail(Code::kArgument, "guard: no action of world %d keeps this guard and the %d before it", env, n);
   }
   Row row{column, {}, {}};
   const size_t copies = column < 0 ? static_cast<size_t>(worlds_) : 1;
@@ -61,7 +63,7 @@ bool Guards::set(int32_t env, int32_t i, const float* normal, float bound) {
   if (now.bound == bound && std::memcmp(now.normal, normal, width() * sizeof *normal) == 0) return false;
   now = {normal, bound};
   if (!keepable(rows, count()))
-    fail(Code::kArgument, "guard: no action of world %d keeps it and the other %d", env, count() - 1);
+    fail(Code::kArgument, "guard: no action of world %d keeps this guard and the other %d", env, count() - 1);
   Row& row = rows_[static_cast<size_t>(declared_ + i)];
   row.bound[static_cast<size_t>(env)] = bound;
   std::copy_n(normal, dim_, row.normal.data() + static_cast<size_t>(env) * width());

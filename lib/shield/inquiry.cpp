@@ -234,11 +234,12 @@ void Shield::try_least(const Pool& pool, bool unneeded) {
     if (!set_.least) {
       const int32_t ahead = q.cost_in - pool.episode_step(q.env);
       if (q.column < 0)
-        fail(Code::kState, "world %d: the copies diverge in %d control steps by every plan that was tried",
-             q.env, ahead);
+        fail(Code::kState,
+             "world %d: under every plan that was tried the copies diverge within %d control steps", q.env,
+             ahead);
       fail(Code::kState,
-           "world %d: every plan that was tried exceeds the budget of cost column %d, %s; what was proposed "
-           "does in %d control steps. Give a backup that does not, or unproven=least",
+           "world %d: every plan that was tried exceeds the budget of cost column %d, %s; the proposed "
+           "action does so in %d control steps. Give a backup policy that does not, or set unproven=least",
            q.env, q.column, Quoted(task_at(pool.task_index()).costs[q.column].name).text, ahead);
     }
     for (int32_t b = 0; b < num_order_; ++b) start_branch(q.env, branch_first(q.env, b), {0, order_[b], 0});

@@ -63,7 +63,8 @@ void Shield::read_options(const ShieldConfig& c) {
   for (int32_t i = 0; i < task.num_defaults; ++i)
     if (const char* key = shield_key(task.defaults[i].key)) {
       if (!options_.knows(key))
-        fail(Code::kNotFound, "task %s: shields have no option \"%s\"", task.name, key);
+        fail(Code::kNotFound, "task %s: its default for option \"%s\" is wrong: shields have no such option",
+             task.name, key);
       options_.set_default(key, task.defaults[i].value);
     }
   options_.set_all(c.options, c.num_options, c.settings, "shield");
@@ -130,7 +131,8 @@ void Shield::make_copies_of(const Pool& pool, int32_t threads) {
   length_ = set_.look > 0 ? std::min(whole, set_.block + set_.look + 1) : whole;
   const int64_t ways = int64_t{n_} * worlds_, branches = ways * set_.tries;
   if (branches * length_ * dim_ > kMostNumbers || ways * (set_.block + 1) > 65536 || branches > 65536)
-    fail(Code::kRange, "shield: %d worlds with blocks of %d, and %d tries of %d decisions, are too many", n_,
+    fail(Code::kRange,
+         "shield: %d worlds with blocks of %d and %d tries of %d decisions need too much memory", n_,
          set_.block, set_.tries, length_);
   try {
     first_.make(pool, n_ * worlds_, threads, hooks_);
@@ -150,14 +152,15 @@ void Shield::end_copies() {
 
 void Shield::need_tries(int32_t backups) const {
   if (backups + 1 > set_.tries)
-    fail(Code::kRange, "tries: %d are fewer than the backups, %d with the proposing policy", set_.tries,
-         backups + 1);
+    fail(Code::kRange, "tries: %d is less than the number of backups, %d with the proposing policy",
+         set_.tries, backups + 1);
 }
 
 void Shield::add_policy(MeanPolicy* policy) {
   if (!set_.predict)
-    fail(Code::kArgument, "policy: with predict=false nothing is tried, so there is no backup");
-  if (num_policies_ == kMostPolicies) fail(Code::kRange, "shield: it has %d policies already", kMostPolicies);
+    fail(Code::kArgument, "policy: with predict=false no action is tried, so a backup is not used");
+  if (num_policies_ == kMostPolicies)
+    fail(Code::kRange, "shield: it already has %d policies, the most that are allowed", kMostPolicies);
   need_tries(num_own_ + 1);
   policies_[num_policies_++] = policy;
   ++num_own_;
@@ -275,7 +278,7 @@ void Shield::check_pool(const Pool& pool) const {
   else if (pool.options_hash() != options_hash_ || pool.task().action_dim() != dim_)
     fail(Code::kArgument, "pool: its task or options are not those that the shield was made for");
   if (pool.config().num_envs != n_)
-    fail(Code::kArgument, "pool: it has %d worlds, the shield is for %d", pool.config().num_envs, n_);
+    fail(Code::kArgument, "pool: it has %d worlds, but the shield is for %d", pool.config().num_envs, n_);
 }
 
 void Shield::act(const Pool& pool, const uint8_t* mask, const float* proposed, Foresight* foresight,
@@ -310,7 +313,8 @@ void Shield::act(const Pool& pool, const uint8_t* mask, const float* proposed, F
 void Shield::predict(const Pool& pool, const uint8_t* mask, const float* proposed, Foresight* foresight,
                      bool unneeded) {
   order_backups(foresight);
-  if (num_order_ == 0) fail(Code::kState, "shield: it has no backup: a policy, zero=true or hold=true");
+  if (num_order_ == 0)
+    fail(Code::kState, "shield: it has no backup; give a policy, or set zero=true or hold=true");
   for (int32_t env = 0; env < n_; ++env)
     if ((!mask || mask[env]) && !follows(pool, env, proposed, foresight != nullptr))
       inquiries_[num_asked_++].env = env;
@@ -372,12 +376,12 @@ void Shield::set_plan(const Pool& pool, int32_t env, const float* actions, int32
   const FpMode fp;
   check_pool(pool);
   if (!set_.predict)
-    fail(Code::kArgument, "plan: with predict=false nothing is tried, so there are no plans");
+    fail(Code::kArgument, "plan: with predict=false no action is tried, so there are no plans");
   if (set_.copies > 0)
-    fail(Code::kUnsupported, "plan: with copies=%d no plan of actions holds for certain", set_.copies);
+    fail(Code::kUnsupported, "plan: with copies=%d no plan can be proven, so none can be set", set_.copies);
   if (!pool.running(env)) fail(Code::kState, "plan: no episode runs in world %d; reset it first", env);
   if (count < 1 || count > length_)
-    fail(Code::kRange, "plan: %d decisions are outside [1, %d]", count, length_);
+    fail(Code::kRange, "plan: the number of decisions, %d, is outside [1, %d]", count, length_);
   for (size_t j = 0; j < row_of(count); ++j)
     if (!std::isfinite(actions[j])) fail(Code::kArgument, "plan: entry %zu is not finite", j);
   order_backups(nullptr);
@@ -396,9 +400,10 @@ void Shield::set_plan(const Pool& pool, int32_t env, const float* actions, int32
       case CopiesTried::Fate::kLost:
         if (ran > count && b + 1 < num_order_) break;
         if (column < 0)
-          fail(Code::kState, "world %d: by the plan it diverges in %d control steps", env, ahead);
-        fail(Code::kState, "world %d: by the plan cost column %d, %s, exceeds its budget in %d control steps",
-             env, column, Quoted(task_at(pool.task_index()).costs[column].name).text, ahead);
+          fail(Code::kState, "world %d: under the plan it diverges in %d control steps", env, ahead);
+        fail(Code::kState,
+             "world %d: under the plan cost column %d, %s, exceeds its budget in %d control steps", env,
+             column, Quoted(task_at(pool.task_index()).costs[column].name).text, ahead);
     }
   }
 }

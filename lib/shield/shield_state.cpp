@@ -56,7 +56,8 @@ void Shield::read_state(const void* bytes, size_t size) {
   in.begin_file(kStateMagic, kStateVersion);
   in.need_section("HEAD");
   if (in.value<uint64_t>() != fingerprint())
-    fail(Code::kFormat, "shield state: of a shield of another task, other sizes or options");
+    fail(Code::kFormat,
+         "shield state: it belongs to a shield with another task, other sizes or other options");
   in.expect_end();
   in.need_section("GARD");
   Reader guards = in;

@@ -164,12 +164,14 @@ void mount(const Options& o, int32_t i, const char* name, ChosenHand* out) {
     const Vector<ArmPlace> poses = arm_poses(arm, X_WF, X_WB);
     if (poses.empty())
       fail(Code::kUnsupported,
-           "%s: from there %s does not bring the %s hand to its place, its flange to (%.3g, %.3g, %.3g)",
+           "%s: from there %s cannot bring the %s hand to its place, that is, its flange to (%.3g, %.3g, "
+           "%.3g)",
            base_key, arm.name, kSideNames[i], X_WF.p.x, X_WF.p.y, X_WF.p.z);
     std::copy_n(poses[0].q, arm.links.count, q);
   } else if (!place_arm(arm, X_WF, out->from, &X_WB, q)) {
-    fail(Code::kUnsupported, "%s: no place was found from which %s reaches (%.3g, %.3g, %.3g); give one",
-         base_key, arm.name, X_WF.p.x, X_WF.p.y, X_WF.p.z);
+    fail(Code::kUnsupported,
+         "%s: no place was found from which %s reaches (%.3g, %.3g, %.3g); set this option", base_key,
+         arm.name, X_WF.p.x, X_WF.p.y, X_WF.p.z);
   }
   out->mounted = std::move(both);
   out->armed = true;
@@ -233,7 +235,7 @@ ChosenHand choose_hand(const HandControlConfig& config, const Options& o, int32_
     out.listed = RobotRef(find_robot(name));
   const Robot& robot = out.robot();
   if (robot.kind != RobotKind::kHand)
-    fail(Code::kUnsupported, "%s: robot %s is no hand", kSideRows[i].of<&SideOptions::hand>().key,
+    fail(Code::kUnsupported, "%s: robot %s is not a hand", kSideRows[i].of<&SideOptions::hand>().key,
          robot.name);
   const bool copied = i > 0 && left_is_copied(o);
   out.side = i == 0 || copied ? Side::kRight : Side::kLeft;

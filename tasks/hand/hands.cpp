@@ -68,10 +68,11 @@ double Hand::angle(int32_t action, double a) const {
 
 Hand find_hand(const Robot& robot, const Scene& scene, int32_t articulation) {
   if (robot.links.count > kMaxHandJoints || robot.tips.count > kMaxHandTips)
-    fail(Code::kUnsupported, "robot %s: %d joints and %d fingertips, a hand has at most %d and %d",
-         robot.name, robot.links.count, robot.tips.count, kMaxHandJoints, kMaxHandTips);
+    fail(Code::kUnsupported,
+         "robot %s: it has %d joints and %d fingertips, but a hand may have at most %d and %d", robot.name,
+         robot.links.count, robot.tips.count, kMaxHandJoints, kMaxHandTips);
   if (robot.tips.count == 0 || robot.fingers.count != robot.tips.count || robot.palm == kNoLink)
-    fail(Code::kUnsupported, "robot %s: a hand has a palm, and a tip for each finger", robot.name);
+    fail(Code::kUnsupported, "robot %s: a hand must have a palm, and a tip for each finger", robot.name);
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Hand h;
   h.robot = &robot;

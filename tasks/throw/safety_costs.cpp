@@ -181,7 +181,7 @@ SafetyCosts safety_costs_from(const Options& options, SafetyKind kind, double fa
     counted = counted || (c.counts[i] && c.windows[i].act >= 0);
   }
   if (!counted)
-    fail(Code::kUnsupported, "robot %s: the first finger has none of the joints that the cost looks at",
+    fail(Code::kUnsupported, "robot %s: its first finger has none of the joints that the cost is about",
          right.robot->name);
   c.throw_height = o.throw_height;
   c.fall_height = fall_height;

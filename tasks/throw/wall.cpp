@@ -48,9 +48,9 @@ Wall wall_from(const Options& o) {
   const Wall w = kRows.read(o);
   if (w.low_z >= w.high_z) fail(Code::kArgument, "wall.low: %g m is not below wall.high", w.low_z);
   if (w.hole_x - 0.5 * w.hole_width < w.low_x() || w.hole_x + 0.5 * w.hole_width > w.high_x())
-    fail(Code::kArgument, "wall.hole.width: the hole reaches out of the wall");
+    fail(Code::kArgument, "wall.hole.width: the hole extends beyond the wall");
   if (w.hole_z - 0.5 * w.hole_height < w.low_z || w.hole_z + 0.5 * w.hole_height > w.high_z)
-    fail(Code::kArgument, "wall.hole.height: the hole reaches out of the wall");
+    fail(Code::kArgument, "wall.hole.height: the hole extends beyond the wall");
   return w;
 }
 

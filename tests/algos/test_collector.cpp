@@ -208,8 +208,9 @@ TEST(Collector, RefusesWhatNoFlagAndNoCostIs) {
     EXPECT_EQ(t.code, Code::kArgument) << text;
     EXPECT_STREQ(t.text.c_str(), text);
   };
-  refused([](Bench& b) { b.cost[2] = -3; }, "cost: row 2, column 0 is -3, less than 0");
-  refused([](Bench& b) { b.valid[2] = 0, b.cost[2] = -3; }, "cost: row 2, column 0 is -3, less than 0");
+  refused([](Bench& b) { b.cost[2] = -3; }, "cost: row 2, column 0 is -3, but it must be 0 or more");
+  refused([](Bench& b) { b.valid[2] = 0, b.cost[2] = -3; },
+          "cost: row 2, column 0 is -3, but it must be 0 or more");
   refused([](Bench& b) { b.valid[1] = 0, b.cost[1] = std::numeric_limits<float>::quiet_NaN(); },
           "cost: row 1 is not finite");
   refused([](Bench& b) { b.terminated[0] = 2; }, "terminated: row 0 is 2, neither 0 nor 1");

@@ -73,11 +73,11 @@ TEST(Columns, WordsThatNameNothing) {
   EXPECT_EQ(refused("right.*,!right.*", Code::kArgument), "actor_obs: no entry of the observation is left");
   refused("!*", Code::kArgument);
   EXPECT_EQ(refused("right.action", Code::kArgument, 0),
-            "actor_obs: 'right.action' needs the names of fields, and the config has none");
+            "actor_obs: 'right.action' needs the names of fields, but config.fields is empty");
   EXPECT_EQ(select_columns("actor_obs", "*", nullptr, 0, kDim).size(), 0u);
   const ObsField cubes[] = {{"cube", 0, 9}};
   EXPECT_EQ(guard([&] { select_columns("critic_obs", "touch", cubes, 1, kDim); }), Code::kNotFound);
-  EXPECT_STREQ(last_error(), "critic_obs: touch: the observation has no such field");
+  EXPECT_STREQ(last_error(), "critic_obs: the observation has no field touch");
 }
 
 // An agent of one algorithm that sees the fields `actor` and `critic` of a row.
@@ -186,7 +186,7 @@ TEST_P(EveryAlgoSees, DifferentPartsOnAnyNumberOfThreadsAndAfterALoad) {
   EXPECT_EQ(parameters(*d), parameters(*a));
   // of another list, though it names the same entries
   EXPECT_EQ(guard([&] { c->load(state.data(), state.size()); }), Code::kFormat);
-  EXPECT_NE(std::strstr(last_error(), "option actor_obs is '!object.*' there, 'touch' in this agent"),
+  EXPECT_NE(std::strstr(last_error(), "option actor_obs is '!object.*' in it, but 'touch' in this agent"),
             nullptr)
       << last_error();
 }

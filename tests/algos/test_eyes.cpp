@@ -316,12 +316,12 @@ TEST(Eyes, ErrorsNameTheArgument) {
   const auto act = [&](Agent& agent, const PointRows& clouds) {
     return thrown([&] { agent.act(world.obs.data(), true, world.action.data(), clouds); });
   };
-  EXPECT_EQ(act(*a, {}).text, "act: the agent's encoder needs points");
+  EXPECT_EQ(act(*a, {}).text, "act: the agent's encoder needs points; call rdm_agent_act_points");
   PointRows plain = world.clouds();
   plain.classes = nullptr;
-  EXPECT_EQ(act(*a, plain).text, "point_class: NULL, but the encoder reads 2 classes");
+  EXPECT_EQ(act(*a, plain).text, "point_class is NULL, but the encoder reads 2 classes");
   world.point_class[3 * kWorldPoints] = 2;
-  EXPECT_EQ(act(*a, world.clouds()).text, "point_class: row 3 has class 2, outside [0, 2)");
+  EXPECT_EQ(act(*a, world.clouds()).text, "point_class: row 3 has class 2, which is outside [0, 2)");
   world.point_class[3 * kWorldPoints] = 1;
   world.points[5 * kWorldPoints * 3 + 7] = NAN;
   EXPECT_EQ(act(*a, world.clouds()).text, "points: row 5 is not finite");
@@ -329,7 +329,7 @@ TEST(Eyes, ErrorsNameTheArgument) {
   AgentSetup blind = small("ppo_lag");
   blind.with("encoder", "");
   const AgentPtr b = blind.make();
-  EXPECT_EQ(act(*b, world.clouds()).text, "points: the agent has no encoder");
+  EXPECT_EQ(act(*b, world.clouds()).text, "points: the agent has no encoder, so it cannot read them");
   world.epoch(*a);  // nothing was lost
   world.epoch(*b);
 
@@ -363,7 +363,7 @@ TEST(Eyes, AStudentClonesWhatItSees) {
     CloneOptions how;
     how.epochs = 60, how.batch_rows = 100, how.learning_rate = 3e-3, how.patience = 0;
     EXPECT_EQ(thrown([&] { a->clone(demo, how); }).text,
-              "recording: without points, which the agent's encoder needs");
+              "recording: it has no points, which the agent's encoder needs");
     demo.clouds.points = points.data();
     const auto before = encoder_of(*a);
     const CloneReport report = a->clone(demo, how);
@@ -432,10 +432,10 @@ TEST(Eyes, PretrainingChangesTheEncoderAlone) {
   };
   EXPECT_EQ(text(), "num_labels: 1 is outside [2, 64]");
   how.num_labels = 2, world.point_class[30] = 2;
-  EXPECT_EQ(text(), "label: row 1 has 2, outside [0, 2)");
+  EXPECT_EQ(text(), "label: row 1 has 2, which is outside [0, 2)");
   world.draw();
   world.decide(*a);
-  EXPECT_EQ(text(), "pretrain: only between epochs; this horizon has begun");
+  EXPECT_EQ(text(), "pretrain is allowed between epochs only, and this horizon has begun");
 }
 
 // Products that keep the points that won are J' W J v + damping v by the whole network.

@@ -129,8 +129,8 @@ TEST(Put, AGenerationThatIsNotThePolicysIsStale) {
         t.generation = other;
         const Thrown why = thrown([&] { a->put(world.obs(), world.action(), t); });
         EXPECT_EQ(why.code, Code::kState);
-        EXPECT_EQ(why.text, "put: generation: " + std::to_string(other) + " sampled this, the policy's is " +
-                                std::to_string(played.back()));
+        EXPECT_EQ(why.text, "put: generation: the rows were sampled by " + std::to_string(other) +
+                                ", but the policy is " + std::to_string(played.back()));
       }
       t.generation = a->missing() % 2 ? played.back() : 0;
       a->put(world.obs(), world.action(), t);
@@ -172,7 +172,9 @@ TEST(Put, NoGenerationWithAnAverage) {
   t.generation = generation_of(policy_file(*a));
   const Thrown why = thrown([&] { a->put(world.obs(), world.action(), t); });
   EXPECT_EQ(why.code, Code::kUnsupported);
-  EXPECT_EQ(why.text, "put: generation: with option average a policy file is not what samples");
+  EXPECT_EQ(why.text,
+            "put: generation: with option average a policy file holds the running mean, not the network that "
+            "samples");
 }
 
 TEST(Put, WhatIsRefusedChangesNothing) {
@@ -183,7 +185,7 @@ TEST(Put, WhatIsRefusedChangesNothing) {
   Transition t = world.transition();
   const auto why = [&] { return thrown([&] { a->put(obs.data(), action.data(), t); }); };
   a->act(obs.data(), true, action.data());
-  EXPECT_EQ(why().text, "put: the last sampled actions were not recorded");
+  EXPECT_EQ(why().text, "put: the actions that were sampled last have not been recorded");
   a->discard();
   const AgentPtr fresh = s.make();  // a's normaliser has counted what it acted on
   const auto refused = [&](Code code, const char* text) {
@@ -192,20 +194,20 @@ TEST(Put, WhatIsRefusedChangesNothing) {
     EXPECT_EQ(got.text, text);
   };
   action[119] = 1.5e5f;
-  refused(Code::kRange, "action: row 39, entry 2 is 150000, outside [-100000, 100000]");
+  refused(Code::kRange, "action: row 39, entry 2 is 150000, which is outside [-100000, 100000]");
   action[119] = std::numeric_limits<float>::quiet_NaN();
-  refused(Code::kRange, "action: row 39, entry 2 is nan, outside [-100000, 100000]");
+  refused(Code::kRange, "action: row 39, entry 2 is nan, which is outside [-100000, 100000]");
   action[119] = 0;
   obs[239] = std::numeric_limits<float>::infinity();
   refused(Code::kArgument, "obs: row 39 is not finite");
   obs[239] = 0;
   cost[79] = -1;
   t.cost = cost.data();
-  refused(Code::kArgument, "cost: row 39, column 1 is -1, less than 0");
+  refused(Code::kArgument, "cost: row 39, column 1 is -1, but it must be 0 or more");
   t = world.transition();
   for (int i = 0; i < 12; ++i)
     fresh->put(obs.data(), action.data(), t), plain->put(obs.data(), action.data(), t);
-  refused(Code::kState, "put: the horizon is full, update is due");
+  refused(Code::kState, "put: the horizon is full; call rdm_agent_update first");
   fresh->update(obs.data(), nullptr), plain->update(obs.data(), nullptr);
   EXPECT_EQ(saved(*fresh), saved(*plain));
   fresh->cancel();

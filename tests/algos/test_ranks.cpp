@@ -317,7 +317,8 @@ TEST(Ranks, OneOutOfStepIsTold) {
     heard[0] = thrown([&] { world.decide(*a); });
   });
   EXPECT_EQ(heard[0].code, Code::kState);
-  EXPECT_EQ(heard[0].text.find("ranks: rank 1 is at exchange 0, this one, 0, at "), 0u) << heard[0].text;
+  EXPECT_EQ(heard[0].text.find("ranks: rank 1 is at exchange 0, but this one (0) is at "), 0u)
+      << heard[0].text;
 }
 
 TEST(Ranks, BadArguments) {
@@ -333,10 +334,12 @@ TEST(Ranks, BadArguments) {
   EXPECT_EQ(why(4, 4, 4, "4"), "rank: 4 is outside [0, 3]");
   EXPECT_EQ(why(-1, 4, 4, "4"), "rank: -1 is outside [0, 3]");
   EXPECT_EQ(why(0, 0, 4, "4"), "ranks: 0 is outside [1, 4096]");
-  EXPECT_EQ(why(0, 4, 4, "4", false), "gather: NULL with 4 ranks");
-  EXPECT_EQ(why(0, 4, 4, "1"), "blocks: 1 are not 4 ranks times a power of two, as 4 would be");
-  EXPECT_EQ(why(0, 4, 6, "12"), "blocks: 12 are not 4 ranks times a power of two, as 4 would be");
-  EXPECT_EQ(why(0, 4, 4, "32"), "blocks: 32 do not divide 16 environments");
+  EXPECT_EQ(why(0, 4, 4, "4", false), "gather is NULL with 4 ranks");
+  EXPECT_EQ(why(0, 4, 4, "1"),
+            "blocks: 1 is not the number of ranks, 4, times a power of two, as 4 would be");
+  EXPECT_EQ(why(0, 4, 6, "12"),
+            "blocks: 12 is not the number of ranks, 4, times a power of two, as 4 would be");
+  EXPECT_EQ(why(0, 4, 4, "32"), "blocks: 32 does not divide the number of environments, 16");
   EXPECT_EQ(why(0, 4, 4, "8"), "");
 }
 

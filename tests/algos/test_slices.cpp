@@ -263,7 +263,8 @@ TEST(Slices, WhatHasToWait) {
   for (const auto& call : calls) {
     const Thrown t = thrown(call);
     EXPECT_EQ(t.code, Code::kState);
-    EXPECT_NE(t.text.find("an update has begun: rdm_agent_update_slice"), std::string::npos) << t.text;
+    EXPECT_NE(t.text.find("an update is under way; finish it with rdm_agent_update_slice"), std::string::npos)
+        << t.text;
   }
   EXPECT_TRUE(a->updating());
   // bytes that do not load leave it where it is, bytes that do put it away

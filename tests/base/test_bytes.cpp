@@ -175,11 +175,11 @@ TEST(Bytes, ForeignByteOrderAndMagicAreNamed) {
   std::swap(b[12], b[15]);
   std::swap(b[13], b[14]);
   EXPECT_EQ(code_of(b), Code::kFormat);
-  EXPECT_STREQ(last_error(), "sample: written with another byte order");
+  EXPECT_STREQ(last_error(), "sample: it was written with another byte order");
   b = sample();
   b[0] = 'X';
   EXPECT_EQ(code_of(b), Code::kFormat);
-  EXPECT_STREQ(last_error(), "sample: wrong magic: not a file of this kind");
+  EXPECT_STREQ(last_error(), "sample: it is not a file of this kind (wrong magic number)");
 }
 
 }  // namespace

@@ -53,7 +53,7 @@ TEST(Host, RefusedMemoryIsAnError) {
   refusing.alloc = [](void*, size_t, size_t) -> void* { return nullptr; };
   refusing.release = [](void*, void*, size_t, size_t) {};
   EXPECT_EQ(guard([&] { host_alloc(refusing, 12, 8); }), Code::kMemory);
-  EXPECT_STREQ(last_error(), "out of memory: 12 bytes were refused");
+  EXPECT_STREQ(last_error(), "out of memory: 12 bytes could not be allocated");
   EXPECT_EQ(guard([&] { host_new<int>(refusing, 1); }), Code::kMemory);
 }
 

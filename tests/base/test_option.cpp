@@ -150,7 +150,7 @@ TEST(Options, AFlagSaysItsWords) {
   Options o;
   o.add_table(&flag, 1);
   EXPECT_EQ(guard([&] { o.set({"push", "yes", 0}, "task"); }), Code::kArgument);
-  EXPECT_STREQ(last_error(), "task option push: 'yes' is none of true, false, on, off, 1, 0");
+  EXPECT_STREQ(last_error(), "task option push: 'yes' is not one of true, false, on, off, 1, 0");
 }
 
 TEST(Options, UnknownKeyNamesTheNearest) {
@@ -314,7 +314,7 @@ TEST(Options, ARangeThatIsNoneIsAnError) {
   EXPECT_EQ(o.range("mass").high, 0.1);
   Options plain = made();
   EXPECT_EQ(set(plain, "gamma", "0.1..0.2"), Code::kArgument);
-  EXPECT_STREQ(last_error(), "task option gamma: takes one number, no range");
+  EXPECT_STREQ(last_error(), "task option gamma: it takes one number, not a range");
   EXPECT_EQ(set(plain, "reset_noise", "0..1"), Code::kArgument);
 }
 

@@ -169,8 +169,8 @@ TEST(Workers, HookThatRunsTooLittleOrTooMuchIsNoticed) {
     Hook hook;
     int times;  // that index 1 is run
   } cases[] = {
-      {"the parallel hook ran 0 of 3", [](int32_t, ParallelBody, void*) {}, 0},
-      {"the parallel hook ran 2 of 3",
+      {"the parallel hook ran 0 of 3 pieces", [](int32_t, ParallelBody, void*) {}, 0},
+      {"the parallel hook ran 2 of 3 pieces",
        [](int32_t n, ParallelBody body, void* context) {
          for (int32_t i = 1; i < n; ++i) body(context, i);
        },
@@ -191,7 +191,7 @@ TEST(Workers, HookThatRunsTooLittleOrTooMuchIsNoticed) {
          for (int32_t i = -1; i < n; ++i) body(context, i);
        },
        1},
-      {"an exception came out of the parallel hook", [](int32_t, ParallelBody, void*) { throw 1; }, 0},
+      {"the parallel hook threw an exception", [](int32_t, ParallelBody, void*) { throw 1; }, 0},
   };
   static Hook hook;
   HostHooks hooks;
@@ -241,7 +241,7 @@ TEST(Workers, HookThatReturnsEarlyIsNoticed) {
     ++w->ended;
   };
   EXPECT_EQ(guard([&] { workers.run(2, body, &work); }), Code::kState);
-  EXPECT_STREQ(last_error(), "the parallel hook returned while 1 of 2 were still running");
+  EXPECT_STREQ(last_error(), "the parallel hook returned while 1 of 2 pieces were still running");
   EXPECT_EQ(work.ended, 1);
   jobs.late = true;
   for (std::thread& t : jobs.threads) t.join();

@@ -186,7 +186,7 @@ int run(int argc, char** argv) {
   std::vector<std::string> texts(argv + std::min(argc, 3), argv + argc);
   for (std::string& t : texts) {
     const size_t at = t.find('=');
-    if (at == std::string::npos) return std::fprintf(stderr, "%s: not key=value\n", t.c_str()), 2;
+    if (at == std::string::npos) return std::fprintf(stderr, "%s: it is not key=value\n", t.c_str()), 2;
     t[at] = '\0';
     options.push_back({t.c_str(), t.c_str() + at + 1, 0});
   }

@@ -125,7 +125,7 @@ TEST(Shim, WhoReadsWhileAnotherChangesIsTold) {
   const uint32_t begun = c.begin_reading("it");
   c.change("it", [&] {
     EXPECT_EQ(read(), Code::kState);
-    EXPECT_STREQ(last_error(), "it: another call changes it meanwhile");
+    EXPECT_STREQ(last_error(), "it is being changed by another call");
     EXPECT_EQ(guard([&] { c.change("it", [] {}); }), Code::kState);
   });
   EXPECT_EQ(guard([&] { c.end_reading(begun, "it"); }), Code::kState) << "begun before";

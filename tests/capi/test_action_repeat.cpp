@@ -292,7 +292,7 @@ TEST(ActionRepeat, AnAgentsRateIsAMultipleOfThePools) {
   EXPECT_EQ(rollout("hidden=8\nhorizon=8"), RDM_OK) << rdm_last_error();  // the lent default is 3
   EXPECT_EQ(rollout("hidden=8\nhorizon=8\naction_repeat=6"), RDM_OK);
   EXPECT_EQ(rollout("hidden=8\nhorizon=8\naction_repeat=4"), RDM_ERROR_ARGUMENT);
-  EXPECT_STREQ(rdm_last_error(), "action_repeat: the agent's is 4, no multiple of the pool's 3");
+  EXPECT_STREQ(rdm_last_error(), "action_repeat: the agent's, 4, is not a multiple of the pool's, 3");
 }
 
 }  // namespace

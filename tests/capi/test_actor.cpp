@@ -165,7 +165,7 @@ TEST(Actor, EachBadArgumentHasAnError) {
   EXPECT_EQ(rdm_actor_act(actor.get(), nullptr, nullptr, nullptr, b.action), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_actor_act(actor.get(), b.obs, nullptr, nullptr, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_actor_act(actor.get(), b.obs, &clouds, nullptr, b.action), RDM_ERROR_STATE);
-  EXPECT_NE(std::strstr(rdm_actor_error(actor.get()), "reads no points"), nullptr);
+  EXPECT_NE(std::strstr(rdm_actor_error(actor.get()), "does not read points"), nullptr);
 }
 
 // A row that is not finite is refused where a decision is due, and nothing has been counted; where the action

@@ -136,10 +136,9 @@ TEST(ContractNovelty, WhatIsRefused) {
   }
   EXPECT_EQ(tells(fresh.get()), 0);
   EXPECT_EQ(rdm_policy_novelty(fresh.get(), obs.data(), 1, out), RDM_ERROR_UNSUPPORTED);
-  EXPECT_STREQ(
-      rdm_last_error(),
-      "novelty: the policy does not tell which rows are usual; an agent with normalize_obs writes it, "
-      "once it has learned from 1000 rows");
+  EXPECT_STREQ(rdm_last_error(),
+               "novelty: the policy file has no statistics of usual rows; an agent with normalize_obs writes "
+               "them after it has learned from 1000 rows");
   const Policy p = read_policy(file);
   obs[hands.dim + 3] = std::numeric_limits<float>::quiet_NaN();
   EXPECT_EQ(rdm_policy_novelty(p.get(), obs.data(), 2, out), RDM_ERROR_ARGUMENT);

@@ -138,7 +138,8 @@ TEST(ContractRanks, WorldsHaveTheirPlaceAmongAll) {
   EXPECT_EQ(hash_of(mine, 0), hash_of(all, 2));
   EXPECT_EQ(hash_of(mine, 1), hash_of(all, 3));
   EXPECT_EQ(rdm_pool_set_rank(mine, 1, 3), RDM_ERROR_STATE);
-  EXPECT_STREQ(rdm_pool_error(mine), "set_rank: only before the first reset; world 0 has begun");
+  EXPECT_STREQ(rdm_pool_error(mine),
+               "set_rank is allowed before the first reset only, and world 0 has begun");
   EXPECT_EQ(rdm_pool_set_rank(nullptr, 0, 1), RDM_ERROR_ARGUMENT);
   rdm_pool* fresh = make_pool(part);
   EXPECT_EQ(rdm_pool_set_rank(fresh, 3, 3), RDM_ERROR_RANGE);
@@ -164,10 +165,11 @@ TEST(ContractRanks, Refusals) {
   r = good, r.rank = 2;
   EXPECT_EQ(why(r, RDM_ERROR_RANGE), "rank: 2 is outside [0, 1]");
   r = good, r.gather = nullptr;
-  EXPECT_EQ(why(r, RDM_ERROR_ARGUMENT), "gather: NULL with 2 ranks");
+  EXPECT_EQ(why(r, RDM_ERROR_ARGUMENT), "gather is NULL with 2 ranks");
   EXPECT_EQ(why(good, RDM_ERROR_ARGUMENT, ""),
-            "blocks: 1 are not 2 ranks times a power of two, as 2 would be");
-  EXPECT_EQ(why(good, RDM_ERROR_ARGUMENT, "blocks=16"), "blocks: 16 do not divide 8 environments");
+            "blocks: 1 is not the number of ranks, 2, times a power of two, as 2 would be");
+  EXPECT_EQ(why(good, RDM_ERROR_ARGUMENT, "blocks=16"),
+            "blocks: 16 does not divide the number of environments, 8");
   rdm_agent_config c = agent_config();
   rdm_agent* a = nullptr;
   EXPECT_EQ(rdm_agent_create_ranked(&a, &c, nullptr), RDM_ERROR_ARGUMENT);
@@ -183,7 +185,7 @@ TEST(ContractRanks, AgentAndPoolAreOfOneRank) {
   rdm_pool* other = make_pool(pc);
   ASSERT_EQ(rdm_pool_reset(other, nullptr, nullptr), RDM_OK);
   EXPECT_EQ(rdm_agent_rollout(part.agent, other, nullptr), RDM_ERROR_ARGUMENT);
-  EXPECT_STREQ(rdm_agent_error(part.agent), "rank: the agent has 1, the pool 0");
+  EXPECT_STREQ(rdm_agent_error(part.agent), "rank: the agent has 1, but the pool has 0");
   rdm_pool_destroy(other);
 }
 
@@ -237,19 +239,19 @@ TEST(ContractRanks, SetUpDifferentlyTheyStopAtOnce) {
   };
   const std::pair<RankMade, const char*> rows[] = {
       {with([](RankMade&) {}), ""},
-      {with([](RankMade& s) { s.pool_seed = 5; }), "ranks: pool seed: rank 1 has 5, rank 0 has 0"},
-      {with([](RankMade& s) { s.worlds = 32; }), "ranks: num_envs: rank 1 has 16, rank 0 has 8"},
-      {with([](RankMade& s) { s.horizon = 16; }), "ranks: horizon: rank 1 has 16, rank 0 has 8"},
-      {with([](RankMade& s) { s.seed = 7; }), "ranks: seed: rank 1 has 7, rank 0 has 0"},
-      {with([](RankMade& s) { s.algo = "focops"; }), "ranks: algo: rank 1 has another one than rank 0"},
+      {with([](RankMade& s) { s.pool_seed = 5; }), "ranks: pool seed differs: rank 1 has 5, rank 0 has 0"},
+      {with([](RankMade& s) { s.worlds = 32; }), "ranks: num_envs differs: rank 1 has 16, rank 0 has 8"},
+      {with([](RankMade& s) { s.horizon = 16; }), "ranks: horizon differs: rank 1 has 16, rank 0 has 8"},
+      {with([](RankMade& s) { s.seed = 7; }), "ranks: seed differs: rank 1 has 7, rank 0 has 0"},
+      {with([](RankMade& s) { s.algo = "focops"; }), "ranks: algo of rank 1 differs from that of rank 0"},
       {with([](RankMade& s) { s.settings = "learning_rate=1e-4"; }),
-       "ranks: option learning_rate: rank 1 has another one than rank 0"},
+       "ranks: option learning_rate of rank 1 differs from that of rank 0"},
       {with([](RankMade& s) { s.settings = "hidden=16"; }),
-       "ranks: option hidden: rank 1 has another one than rank 0"},
+       "ranks: option hidden of rank 1 differs from that of rank 0"},
       {with([](RankMade& s) { s.autoreset = RDM_AUTORESET_NEXT_STEP; }),
-       "ranks: pool autoreset: rank 1 has 1, rank 0 has 0"},
+       "ranks: pool autoreset differs: rank 1 has 1, rank 0 has 0"},
       {with([](RankMade& s) { s.pool_settings = "noise.*=0.1"; }),
-       "ranks: pool options: rank 1 has another one than rank 0"}};
+       "ranks: pool options of rank 1 differs from that of rank 0"}};
   for (const auto& [second, text] : rows) EXPECT_EQ(meet(second), text);
-  EXPECT_EQ(meet(RankMade{}, 0), "ranks: at the place of rank 1 is one that calls itself rank 0");
+  EXPECT_EQ(meet(RankMade{}, 0), "ranks: the message received for rank 1 says that it comes from rank 0");
 }

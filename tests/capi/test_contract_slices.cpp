@@ -31,7 +31,7 @@ void collect(rdm_agent* a) {
 }
 
 bool refused(rdm_result r, const rdm_agent* a) {
-  return r == RDM_ERROR_STATE && std::string(rdm_agent_error(a)).find("an update has begun") < 20;
+  return r == RDM_ERROR_STATE && std::string(rdm_agent_error(a)).find("an update is under way") < 20;
 }
 
 }  // namespace

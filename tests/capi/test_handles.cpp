@@ -219,12 +219,12 @@ TEST(Handles, OfAnotherKindAreNamed) {
   Handles good;
   EXPECT_EQ(rdm_pool_step(reinterpret_cast<rdm_pool*>(good.agent)), RDM_ERROR_ARGUMENT);
   EXPECT_STREQ(rdm_agent_error(good.agent), "");  // whose own text stays what it was
-  expect_refused(kPoolCalls, good.agent, good, "pool: the handle is of kind agent");
-  expect_refused(kAgentCalls, good.pool, good, "agent: the handle is of kind pool");
-  expect_refused(kPolicyCalls, good.map, good, "policy: the handle is of kind map");
-  expect_refused(kMapCalls, good.policy, good, "map: the handle is of kind policy");
-  expect_refused(kPlannerCalls, good.pool, good, "planner: the handle is of kind pool");
-  expect_refused(kActorCalls, good.policy, good, "actor: the handle is of kind policy");
+  expect_refused(kPoolCalls, good.agent, good, "pool: it is a handle of another kind, agent");
+  expect_refused(kAgentCalls, good.pool, good, "agent: it is a handle of another kind, pool");
+  expect_refused(kPolicyCalls, good.map, good, "policy: it is a handle of another kind, map");
+  expect_refused(kMapCalls, good.policy, good, "map: it is a handle of another kind, policy");
+  expect_refused(kPlannerCalls, good.pool, good, "planner: it is a handle of another kind, pool");
+  expect_refused(kActorCalls, good.policy, good, "actor: it is a handle of another kind, policy");
 }
 
 TEST(Handles, ThatWereDestroyedAreRefused) {

@@ -10,7 +10,8 @@ namespace rdm::test {
 namespace {
 
 constexpr const char* kBusy =
-    ": a call on it has not returned yet, of another thread, or the one that this callback runs in";
+    " is in use by a call that has not returned yet: one of another thread, or the one whose callback this "
+    "is";
 
 struct Log {
   std::vector<std::string> lines;
@@ -269,8 +270,8 @@ struct Jobs {
 
 TEST(ParallelHook, ThatRunsTooLittleOrTooMuchIsTold) {
   const std::pair<Jobs::Does, const char*> rows[] = {
-      {Jobs::Does::kNothing, "the parallel hook ran 0 of 2"},
-      {Jobs::Does::kLess, "the parallel hook ran 1 of 2"},
+      {Jobs::Does::kNothing, "the parallel hook ran 0 of 2 pieces"},
+      {Jobs::Does::kLess, "the parallel hook ran 1 of 2 pieces"},
       {Jobs::Does::kTwice, "the parallel hook ran index 0 twice"}};
   for (const auto& [does, text] : rows) {
     Jobs jobs;

@@ -136,11 +136,11 @@ TEST(Library, ARefusedInitSaysWhatWentBefore) {
   host.struct_size = sizeof host;
   ASSERT_EQ(rdm_init(nullptr), RDM_OK);
   EXPECT_EQ(rdm_init(&host), RDM_ERROR_STATE);
-  EXPECT_STREQ(rdm_last_error(), "rdm_init: called before, without hooks; shut down first");
+  EXPECT_STREQ(rdm_last_error(), "rdm_init: it was called before, without hooks; call rdm_shutdown first");
   rdm_shutdown();
   ASSERT_EQ(rdm_init(&host), RDM_OK);
   EXPECT_EQ(rdm_init(&host), RDM_ERROR_STATE);
-  EXPECT_STREQ(rdm_last_error(), "rdm_init: called before, with hooks; shut down first");
+  EXPECT_STREQ(rdm_last_error(), "rdm_init: it was called before, with hooks; call rdm_shutdown first");
   rdm_shutdown();
 }
 

@@ -202,7 +202,7 @@ TEST(Objects, RefusalsNameTheRow) {
   refused(RDM_ERROR_RANGE, "num_shapes: 0", [](auto& d, auto*) { d.num_shapes = 0; });
   refused(RDM_ERROR_ARGUMENT, "shapes is NULL", [](auto& d, auto*) { d.shapes = nullptr; });
   refused(RDM_ERROR_ARGUMENT, "the name is empty", [](auto& d, auto*) { d.name = nullptr; });
-  refused(RDM_ERROR_ARGUMENT, "the name is taken", [](auto& d, auto*) { d.name = "011_banana"; });
+  refused(RDM_ERROR_ARGUMENT, "the name is already used", [](auto& d, auto*) { d.name = "011_banana"; });
   refused(RDM_ERROR_RANGE, "mass 0 is outside", [](auto& d, auto*) { d.mass = 0; });
   refused(RDM_ERROR_ARGUMENT, "friction is not finite", [&](auto& d, auto*) { d.friction = nan; });
   refused(RDM_ERROR_RANGE, "shapes[1]: size", [](auto&, auto* s) { s[1].size[2] = -1; });
@@ -312,7 +312,7 @@ TEST(Objects, StandInAScene) {
   EXPECT_EQ(seen.ball, 1);
   const rdm_result codes[6] = {RDM_ERROR_ARGUMENT, RDM_ERROR_RANGE,    RDM_ERROR_RANGE,
                                RDM_ERROR_ARGUMENT, RDM_ERROR_ARGUMENT, RDM_ERROR_STATE};
-  const char* texts[6] = {"mug is taken", "object: 100000", "scale: 0", "name", "p", "complete"};
+  const char* texts[6] = {"mug is already used", "object: 100000", "scale: 0", "name", "p", "complete"};
   for (int i = 0; i < 6; ++i) {
     EXPECT_EQ(seen.bad[i], codes[i]) << i;
     EXPECT_NE(seen.texts[i].find(texts[i]), std::string::npos) << seen.texts[i];

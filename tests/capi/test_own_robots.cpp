@@ -267,7 +267,7 @@ TEST(Robots, BadOnesAreRefusedByName) {
   refused(RDM_ERROR_ARGUMENT, "quaternion", [](D&, L& l) { l.pose.q[3] = 2; });
   refused(RDM_ERROR_RANGE, "kind", [](D& d, L&) { d.kind = 3; });
   refused(RDM_ERROR_RANGE, "flange", [](D& d, L&) { d.flange_link = 1; });
-  refused(RDM_ERROR_ARGUMENT, "a hand has a palm", [](D& d, L&) { d.kind = RDM_ROBOT_HAND; });
+  refused(RDM_ERROR_ARGUMENT, "a hand must have a palm", [](D& d, L&) { d.kind = RDM_ROBOT_HAND; });
   refused(RDM_ERROR_RANGE, "mirror", [](D& d, L&) { d.mirror = 3; });
 }
 

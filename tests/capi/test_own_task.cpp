@@ -109,7 +109,7 @@ TEST(OwnTask, StaysWhileAPoolHasIt) {
   int32_t task = -1, found = -1;
   ASSERT_EQ(rdm_task_create(&task, &t.def), RDM_OK) << rdm_last_error();
   EXPECT_EQ(rdm_task_create(&found, &t.def), RDM_ERROR_ARGUMENT);
-  EXPECT_STREQ(rdm_last_error(), "task own_kept: the name is taken");
+  EXPECT_STREQ(rdm_last_error(), "task own_kept: the name is already used");
   {
     Rows rows("own_kept", 2);
     rows.step(3);

@@ -92,9 +92,9 @@ struct Broken {
 // Filled by the faults of tests/support/own_task.hpp, printed as the table of messages.
 const Broken kBroken[] = {
     {Fault::kBuildFails, "build: the ball is too large"},
-    {Fault::kBuildReturnsNonsense, "build: it returned 7, which is no rdm_result"},
-    {Fault::kBuildThrows, "build: an exception came out of it"},
-    {Fault::kResetHidden, "reset: the state is another one for the same seed; step 0"},
+    {Fault::kBuildReturnsNonsense, "build returned 7, which is not an rdm_result"},
+    {Fault::kBuildThrows, "build threw an exception"},
+    {Fault::kResetHidden, "reset: the state differs for the same seed; step 0"},
     {Fault::kResetFails, "reset: call not allowed in this state; step 0"},
     {Fault::kStatePast, "control: it writes past the end of its state, byte 50 of 48; step 1"},
     {Fault::kStateBefore, "control: it writes before its state; step 1"},
@@ -104,17 +104,17 @@ const Broken kBroken[] = {
     {Fault::kRowBound, "observe: entry 1 of field action is 1.5, outside [-1, 1]; step 0"},
     {Fault::kObserveState, "observe: it changes its state; step 0"},
     {Fault::kObserveCounts, "observe: called twice it writes other numbers; step 0"},
-    {Fault::kObserveSets, "observe: world: observe changes nothing; step 0"},
+    {Fault::kObserveSets, "observe: world: it cannot be changed in observe; step 0"},
     {Fault::kControlAction, "control: it changes the action; step 1"},
     {Fault::kControlNan, "control: targets[0] is not finite or beyond 1e+06; step 1"},
     {Fault::kControlTouches, "after save and restore; step"},
     {Fault::kJudgeNan, "judge: the reward is not finite; step 3"},
     {Fault::kJudgeRawNan, "judge: the raw value of cost speed is not finite; step 1"},
-    {Fault::kJudgeNegative, "judge: cost speed is -0.5, less than 0; step 1"},
-    {Fault::kJudgeHidden, "judge: its verdict is another one for the same seed; step"},
+    {Fault::kJudgeNegative, "judge: cost speed is -0.5, but it must be 0 or more; step 1"},
+    {Fault::kJudgeHidden, "judge: its verdict differs for the same seed; step"},
     {Fault::kStateOutside, "check_state: start is not within +-1; step 5"},
     {Fault::kStateElsewhere, "for the same seed; step"},
-    {Fault::kHoldFlies, "with the hold action world 0 diverges; step 1"},
+    {Fault::kHoldFlies, "world 0 diverges with the hold action; step 1"},
 };
 
 TEST(TaskCheck, TheFirstBrokenPromiseIsNamed) {
@@ -136,7 +136,8 @@ TEST(TaskCheck, MemoryThatIsLeftBehindIsNamed) {
   t.user.leaked.reserve(100000);
   const Registered made(t.def);
   EXPECT_EQ(rdm_task_check("leaks", nullptr, nullptr, nullptr, nullptr, 0), RDM_ERROR_ARGUMENT);
-  EXPECT_NE(std::strstr(rdm_last_error(), "judge: it leaves memory behind"), nullptr) << rdm_last_error();
+  EXPECT_NE(std::strstr(rdm_last_error(), "judge does not free all of its memory"), nullptr)
+      << rdm_last_error();
   std::printf("%s\n", rdm_last_error());
 }
 #endif

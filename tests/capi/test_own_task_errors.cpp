@@ -26,10 +26,10 @@ TEST(OwnTaskErrors, OfDescriptions) {
   static const float far[2] = {2, 0};
   const BadDef rows[] = {
       {RDM_ERROR_ARGUMENT, "def.name is NULL", [](auto& t) { t.def.name = nullptr; }},
-      {RDM_ERROR_RANGE, "def.name:  has not 1 to 40 characters", [](auto& t) { t.def.name = ""; }},
-      {RDM_ERROR_ARGUMENT, "def.name: a b has other characters than letters, digits, '_', '-', '.'",
+      {RDM_ERROR_RANGE, "def.name:  must have 1 to 40 characters", [](auto& t) { t.def.name = ""; }},
+      {RDM_ERROR_ARGUMENT, "def.name: a b may contain only letters, digits, '_', '-' and '.'",
        [](auto& t) { t.def.name = "a b"; }},
-      {RDM_ERROR_ARGUMENT, "task grasp: the name is taken", [](auto& t) { t.def.name = "grasp"; }},
+      {RDM_ERROR_ARGUMENT, "task grasp: the name is already used", [](auto& t) { t.def.name = "grasp"; }},
       {RDM_ERROR_RANGE, "def.max_steps: 0 is outside [1, 100000]", [](auto& t) { t.def.max_steps = 0; }},
       {RDM_ERROR_RANGE, "def.action_dim: 1025 is outside [1, 1024]",
        [](auto& t) { t.def.action_dim = 1025; }},
@@ -43,7 +43,7 @@ TEST(OwnTaskErrors, OfDescriptions) {
       {RDM_ERROR_RANGE, "def.hold[0]: 2 is outside [-1, 1]", [](auto& t) { t.def.hold = far; }},
       {RDM_ERROR_RANGE, "def.num_fields: 0 is outside [1, 512]", [](auto& t) { t.def.num_fields = 0; }},
       {RDM_ERROR_ARGUMENT, "def.fields is NULL with num_fields 4", [](auto& t) { t.def.fields = nullptr; }},
-      {RDM_ERROR_ARGUMENT, "def.fields[1].name: ball.position is there twice",
+      {RDM_ERROR_ARGUMENT, "def.fields[1].name: ball.position occurs twice",
        [](auto& t) { t.fields[1].name = "ball.position"; }},
       {RDM_ERROR_ARGUMENT, "def.fields[0].unit is NULL", [](auto& t) { t.fields[0].unit = nullptr; }},
       {RDM_ERROR_RANGE, "def.fields[2].count: 0 of paddle.position is outside [1, 16384]",
@@ -52,33 +52,35 @@ TEST(OwnTaskErrors, OfDescriptions) {
        [](auto& t) { t.fields[2].low = 1, t.fields[2].high = -1; }},
       {RDM_ERROR_RANGE, "def.num_costs: 0 is outside [1, 16]", [](auto& t) { t.def.num_costs = 0; }},
       {RDM_ERROR_RANGE, "def.num_costs: 17 is outside [1, 16]", [](auto& t) { t.def.num_costs = 17; }},
-      {RDM_ERROR_ARGUMENT, "def.costs[1].name: touch is there twice",
+      {RDM_ERROR_ARGUMENT, "def.costs[1].name: touch occurs twice",
        [](auto& t) { t.costs[1].name = "touch"; }},
       {RDM_ERROR_ARGUMENT, "def.costs[0].limit of touch is not finite",
        [](auto& t) { t.costs[0].limit = NAN; }},
-      {RDM_ERROR_ARGUMENT, "def.options[1].key: push is there twice",
+      {RDM_ERROR_ARGUMENT, "def.options[1].key: push occurs twice",
        [](auto& t) { t.options[1].key = "push"; }},
       {RDM_ERROR_ARGUMENT, "def.options[0].help is NULL", [](auto& t) { t.options[0].help = nullptr; }},
-      {RDM_ERROR_RANGE, "def.options[0].number: 11 of push is outside [0, 10], or no integer",
+      {RDM_ERROR_RANGE, "def.options[0].number: 11 of push is outside [0, 10], or not an integer",
        [](auto& t) { t.options[0].number = 11; }},
-      {RDM_ERROR_ARGUMENT, "def.options[0].choices of push: a number or integer has a..b or NULL",
+      {RDM_ERROR_ARGUMENT,
+       "def.options[0].choices of push: for a number or an integer it must be \"a..b\" or NULL",
        [](auto& t) { t.options[0].choices = "1|2"; }},
-      {RDM_ERROR_RANGE, "def.options[1].text: cross of mood is none of calm|wild",
+      {RDM_ERROR_RANGE, "def.options[1].text: cross of mood is not one of calm|wild",
        [](auto& t) { t.options[1].text = "cross"; }},
       {RDM_ERROR_RANGE, "def.options[0]: low -1e+300 or high 10 of push is outside [-2147483648, 2147483647]",
        [](auto& t) { t.options[0].kind = RDM_KIND_INTEGER, t.options[0].low = -1e300; }},
       {RDM_ERROR_RANGE,
        "def.options[0]: low 0 or high 2147483648 of push is outside [-2147483648, 2147483647]",
        [](auto& t) { t.options[0].kind = RDM_KIND_INTEGER, t.options[0].high = 2147483648.0; }},
-      {RDM_ERROR_RANGE, "def.options[0].number: 1e+12 of push is outside [0, 10], or no integer",
+      {RDM_ERROR_RANGE, "def.options[0].number: 1e+12 of push is outside [0, 10], or not an integer",
        [](auto& t) { t.options[0].kind = RDM_KIND_INTEGER, t.options[0].number = 1e12; }},
       {RDM_ERROR_RANGE, "def.options[0].kind: 9 of push is outside [0, 3]",
        [](auto& t) { t.options[0].kind = 9; }},
-      {RDM_ERROR_ARGUMENT, "def.options[2].kind: frequency, which every task has, is an RDM_KIND_NUMBER",
+      {RDM_ERROR_ARGUMENT,
+       "def.options[2].kind: frequency is an option of every task and of kind RDM_KIND_NUMBER",
        [](auto& t) { t.options[2].kind = RDM_KIND_TEXT; }},
-      {RDM_ERROR_RANGE, "def.options[2].number: 5 of frequency is outside [10, 1000], or no integer",
+      {RDM_ERROR_RANGE, "def.options[2].number: 5 of frequency is outside [10, 1000], or not an integer",
        [](auto& t) { t.options[2].number = 5; }},
-      {RDM_ERROR_ARGUMENT, "def.options[0].key: max_steps is def.max_steps",
+      {RDM_ERROR_ARGUMENT, "def.options[0].key: max_steps is not an option; set def.max_steps",
        [](auto& t) { t.options[0].key = "max_steps"; }},
       {RDM_ERROR_RANGE, "def.cameras[0].fov_y: 0 of front is outside [0.01, 3]",
        [](auto& t) { t.cameras[0].fov_y = 0; }},
@@ -88,7 +90,7 @@ TEST(OwnTaskErrors, OfDescriptions) {
        [](auto& t) { t.cameras[0].up[1] = std::numeric_limits<float>::infinity(); }},
       {RDM_ERROR_ARGUMENT, "def.cameras[0].reserved: it must be 0",
        [](auto& t) { t.cameras[0].reserved = 1; }},
-      {RDM_ERROR_ARGUMENT, "def.cameras[0]: front does not look from one place to another",
+      {RDM_ERROR_ARGUMENT, "def.cameras[0]: eye and target of front are the same, or not finite",
        [](auto& t) { std::copy_n(t.cameras[0].eye, 3, t.cameras[0].target); }},
       {RDM_ERROR_ARGUMENT, "def.defaults[0].key is NULL", [](auto& t) { t.defaults[0].key = nullptr; }},
   };
@@ -214,10 +216,11 @@ TEST(OwnTaskErrors, OfScenes) {
     });
   };
   const BadScene rows[] = {
-      {RDM_ERROR_ARGUMENT, "scene: nothing in it can move", [](rdm_scene*) -> rdm_result { return RDM_OK; }},
-      {RDM_ERROR_ARGUMENT, "scene: the name ball is taken",
+      {RDM_ERROR_ARGUMENT, "scene: it has nothing that can move",
+       [](rdm_scene*) -> rdm_result { return RDM_OK; }},
+      {RDM_ERROR_ARGUMENT, "scene: the name ball is already used",
        with_body([](auto& b, auto&) { b.name = "ball"; })},
-      {RDM_ERROR_ARGUMENT, "shape ball is there twice", with_body([](auto&, auto& s) { s.name = "ball"; })},
+      {RDM_ERROR_ARGUMENT, "shape ball occurs twice", with_body([](auto&, auto& s) { s.name = "ball"; })},
       {RDM_ERROR_ARGUMENT, "body.name is NULL", with_body([](auto& b, auto&) { b.name = nullptr; })},
       {RDM_ERROR_RANGE, "body cup: mass 0 is not above 0 and up to 1e6",
        with_body([](auto& b, auto&) { b.mass = 0; })},
@@ -227,7 +230,7 @@ TEST(OwnTaskErrors, OfScenes) {
        "body cup: its shapes' centre of mass is at (0, 0, 0.1), not at the origin: move them, or give "
        "moments",
        with_body([](auto&, auto& s) { s.pose.p[2] = 0.1; })},
-      {RDM_ERROR_RANGE, "shape cup: a size or its place is not within bounds",
+      {RDM_ERROR_RANGE, "shape cup: a size or its position is out of bounds",
        with_body([](auto&, auto& s) { s.size[1] = 0; })},
       {RDM_ERROR_RANGE, "cup: half size 0 is outside [1e-06, 1000]", with_body([](auto& b, auto& s) {
          s.size[1] = 0;
@@ -235,7 +238,7 @@ TEST(OwnTaskErrors, OfScenes) {
        })},
       {RDM_ERROR_ARGUMENT, "cup: moment of inertia is not positive definite",
        with_body([](auto& b, auto&) { b.moment[0] = -1; })},
-      {RDM_ERROR_ARGUMENT, "cup: the quaternion is not a unit one",
+      {RDM_ERROR_ARGUMENT, "cup: the quaternion does not have length 1",
        with_body([](auto& b, auto&) { b.pose.q[0] = 2; })},
       {RDM_ERROR_ARGUMENT, "cup: position is not finite",
        with_body([](auto& b, auto&) { b.pose.p[0] = NAN; })},
@@ -243,9 +246,9 @@ TEST(OwnTaskErrors, OfScenes) {
        with_body([](auto& b, auto&) { b.linear_damping = -1; })},
       {RDM_ERROR_NOT_FOUND, "material ruber: unknown",
        with_body([](auto&, auto& s) { s.material = "ruber"; })},
-      {RDM_ERROR_ARGUMENT, "shape cup: kind 4 makes no body",
+      {RDM_ERROR_ARGUMENT, "shape cup: kind 4 cannot be part of a body",
        with_body([](auto&, auto& s) { s.kind = RDM_SHAPE_PLANE; })},
-      {RDM_ERROR_ARGUMENT, "shape cup: kind 12 makes no body",
+      {RDM_ERROR_ARGUMENT, "shape cup: kind 12 cannot be part of a body",
        with_body([](auto&, auto& s) { s.kind = 12; })},
       {RDM_ERROR_RANGE, "shape cup: num_points: 0 is outside [4, 32]",
        with_body([](auto&, auto& s) { s.kind = RDM_SHAPE_HULL; })},
@@ -253,23 +256,25 @@ TEST(OwnTaskErrors, OfScenes) {
          s.kind = RDM_SHAPE_HULL;
          s.num_points = 4;
        })},
-      {RDM_ERROR_ARGUMENT, "cup: the points are in one plane or too near each other",
+      {RDM_ERROR_ARGUMENT, "cup: the points lie in one plane, or too close to each other",
        with_body([](auto&, auto& s) {
          s.kind = RDM_SHAPE_HULL;
          s.num_points = 4;
          s.points = flat;
        })},
       {RDM_ERROR_ARGUMENT,
-       "robot.robot of other: left out: of rdm_robot_find, in a struct that rdm_scene_robot_init has filled",
+       "robot.robot of other is not set: fill the struct by rdm_scene_robot_init, then set the number that "
+       "rdm_robot_find gives",
        with_robot([](auto& r) { r.robot = -1; })},
       {RDM_ERROR_RANGE, no_robot.c_str(), with_robot([](auto& r) { r.robot = 99999; })},
       {RDM_ERROR_ARGUMENT, "robot.name is NULL", with_robot([](auto& r) { r.name = nullptr; })},
-      {RDM_ERROR_ARGUMENT, "scene: the name hand is taken", with_robot([](auto& r) { r.name = "hand"; })},
+      {RDM_ERROR_ARGUMENT, "scene: the name hand is already used",
+       with_robot([](auto& r) { r.name = "hand"; })},
       {RDM_ERROR_ARGUMENT, "robot.struct_size: 3 is less than 112",
        with_robot([](auto& r) { r.struct_size = 3; })},
       {RDM_ERROR_RANGE, "other: base_damping -1 is outside [0, 1000000]",
        with_robot([](auto& r) { r.base_damping = -1; })},
-      {RDM_ERROR_ARGUMENT, "material clay is there twice", after([](auto* s) {
+      {RDM_ERROR_ARGUMENT, "material clay occurs twice", after([](auto* s) {
          rdm_scene_add_material(s, "clay");
          return rdm_scene_add_material(s, "clay");
        })},
@@ -283,7 +288,7 @@ TEST(OwnTaskErrors, OfScenes) {
       {RDM_ERROR_ARGUMENT, "law.struct_size: 3 is less than 72",
        with_law("default", [](auto& l) { l.struct_size = 3; })},
       {RDM_ERROR_ARGUMENT, "shape.name is NULL", add_static(nullptr)},
-      {RDM_ERROR_ARGUMENT, "shape ball is there twice", add_static("ball")},
+      {RDM_ERROR_ARGUMENT, "shape ball occurs twice", add_static("ball")},
       {RDM_ERROR_NOT_FOUND, "body bal: unknown; nearest is ball", after([](auto* s) {
          int32_t i;
          return rdm_scene_find(s, RDM_SCENE_BODY, "bal", &i);
@@ -296,7 +301,8 @@ TEST(OwnTaskErrors, OfScenes) {
          int32_t i;
          return rdm_scene_add_touch(s, "hand*", "cub*", &i);
        })},
-      {RDM_ERROR_STATE, "scene: it is complete: nothing is added or set after the first find, touch or joint",
+      {RDM_ERROR_STATE,
+       "scene: it is complete; nothing can be added or set after the first find, touch or joint",
        after([](auto* s) {
          int32_t i;
          rdm_scene_find(s, RDM_SCENE_BODY, "ball", &i);
@@ -308,7 +314,7 @@ TEST(OwnTaskErrors, OfScenes) {
        after([](auto* s) { return rdm_scene_set_actions(s, 0, nullptr, nullptr); })},
       {RDM_ERROR_RANGE, "count: -1 is outside [1, 1024]",
        after([](auto* s) { return rdm_scene_set_actions(s, static_cast<size_t>(-1), nullptr, nullptr); })},
-      {RDM_ERROR_ARGUMENT, "option engine is a text: rdm_scene_get_text has it", after([](auto* s) {
+      {RDM_ERROR_ARGUMENT, "option engine is a text; call rdm_scene_get_text", after([](auto* s) {
          double x;
          return rdm_scene_get_number(s, "engine", &x);
        })},
@@ -324,7 +330,7 @@ TEST(OwnTaskErrors, OfScenes) {
          double low, high;
          return rdm_scene_get_range(s, "engine", &low, &high);
        })},
-      {RDM_ERROR_ARGUMENT, "option gravity is no text: rdm_scene_get_number has it", after([](auto* s) {
+      {RDM_ERROR_ARGUMENT, "option gravity is not a text; call rdm_scene_get_number", after([](auto* s) {
          const char* text;
          return rdm_scene_get_text(s, "gravity", &text);
        })},
@@ -359,41 +365,42 @@ TEST(OwnTaskErrors, OfCallsInAWorld) {
       {RDM_ERROR_RANGE, "group: 0 is outside [0, 0)",
        [](auto* w) { return rdm_world_get_touch(w, 0, nullptr, nullptr); }},
       {RDM_ERROR_ARGUMENT, "out is NULL", [](auto* w) { return rdm_world_get_body(w, 0, nullptr); }},
-      {RDM_ERROR_ARGUMENT, "set_body: motion 0 has no unit quaternion",
+      {RDM_ERROR_ARGUMENT, "set_body: the quaternion of motion 0 does not have length 1",
        [](auto* w) {
          rdm_motion m{};
          m.pose.q[0] = NAN;
          return rdm_world_set_body(w, 0, &m);
        }},
-      {RDM_ERROR_ARGUMENT, "set_body: motion 0 is not finite or beyond 1e+06",
+      {RDM_ERROR_ARGUMENT, "set_body: motion 0 is not finite, or its magnitude is above 1e+06",
        [](auto* w) {
          rdm_motion m{};
          m.pose.q[3] = 1, m.v[1] = NAN;
          return rdm_world_set_body(w, 0, &m);
        }},
-      {RDM_ERROR_STATE, "robot hand: its base is fixed",
+      {RDM_ERROR_STATE, "robot hand: its base is fixed and cannot be moved",
        [](auto* w) { return rdm_world_set_base(w, 0, &out); }},
-      {RDM_ERROR_STATE, "robot hand: its base is fixed",
+      {RDM_ERROR_STATE, "robot hand: its base is fixed and cannot be moved",
        [](auto* w) { return rdm_world_push_base(w, 0, zero, zero); }},
-      {RDM_ERROR_RANGE, "n: 3 q, the robot has 24",
+      {RDM_ERROR_RANGE, "n: there are 3 q, but the robot has 24",
        [](auto* w) { return rdm_world_set_joints(w, 0, x, nullptr, 3); }},
-      {RDM_ERROR_ARGUMENT, "set_joints: joint 2 is not finite or faster than 1e+06",
+      {RDM_ERROR_ARGUMENT, "set_joints: joint 2 is not finite, or faster than 1e+06",
        [](auto* w) {
          double q[24] = {};
          q[2] = NAN;
          return rdm_world_set_joints(w, 0, q, nullptr, 24);
        }},
-      {RDM_ERROR_RANGE, "first, n: 10 joints from 20 on, of 24",
+      {RDM_ERROR_RANGE, "first, n: 10 joints from 20 on are more than the 24 that there are",
        [](auto* w) { return rdm_world_set_targets(w, 20, x, 10); }},
       {RDM_ERROR_ARGUMENT, "targets[0] is not finite or beyond 1e+06",
        [](auto* w) { return rdm_world_set_targets(w, 0, nan, 1); }},
-      {RDM_ERROR_RANGE, "n: 24 commands, the robot has 20",
+      {RDM_ERROR_RANGE, "n: there are 24 commands, but the robot has 20",
        [](auto* w) { return rdm_world_set_commands(w, 0, x, 24); }},
-      {RDM_ERROR_STATE, "world: its scene has no feed-forward, rdm_scene_set_feedforward",
+      {RDM_ERROR_STATE,
+       "world: its scene has no feed-forward; call rdm_scene_set_feedforward when it is built",
        [](auto* w) { return rdm_world_set_feedforward(w, 0, x, 1); }},
-      {RDM_ERROR_RANGE, "n: 2 efforts, the robot has 24",
+      {RDM_ERROR_RANGE, "n: there are 2 efforts, but the robot has 24",
        [](auto* w) { return rdm_world_get_gravity(w, 0, x, 2); }},
-      {RDM_ERROR_STATE, "world: its scene is not adjustable, rdm_scene_set_adjustable",
+      {RDM_ERROR_STATE, "world: its scene is not adjustable; call rdm_scene_set_adjustable when it is built",
        [](auto* w) { return rdm_world_set_factors(w, nullptr, 0); }},
       {RDM_ERROR_ARGUMENT, "force is not finite",
        [](auto* w) { return rdm_world_push_body(w, 0, nan, zero); }},
@@ -410,7 +417,7 @@ TEST(OwnTaskErrors, OfCallsInAWorld) {
          return rdm_world_get_joints(w, &j);
        }},
       {RDM_ERROR_FORMAT, "of my own", [](auto*) { return rdm_fail(RDM_ERROR_FORMAT, "of my own"); }},
-      {RDM_ERROR_RANGE, "code: 0 is no error; the text was: fine",
+      {RDM_ERROR_RANGE, "code: 0 is not the code of an error; the text was: fine",
        [](auto*) { return rdm_fail(RDM_OK, "fine"); }},
   };
   for (const BadCall& row : rows) {

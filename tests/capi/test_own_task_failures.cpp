@@ -194,7 +194,7 @@ TEST(OwnTaskFailures, ExceptionsAreTheHosts) {
     EXPECT_EQ(rdm_pool_reset(p.pool, nullptr, nullptr), RDM_OK);
     EXPECT_EQ(rdm_pool_step(p.pool), RDM_OK);
     EXPECT_EQ(p.b.status[0], static_cast<uint32_t>(RDM_STATUS_TASK));
-    EXPECT_EQ(p.text(0), "world 0: task throws: judge: an exception came out of it");
+    EXPECT_EQ(p.text(0), "world 0: task throws: judge threw an exception");
     t.reset = [](rdm_world*, rdm_random*) -> rdm_result { throw 1; };
     EXPECT_EQ(rdm_pool_reset(p.pool, nullptr, nullptr), RDM_ERROR_ARGUMENT);
   }
@@ -203,7 +203,7 @@ TEST(OwnTaskFailures, ExceptionsAreTheHosts) {
   c.task = "throws";
   rdm_pool* pool = nullptr;
   EXPECT_EQ(rdm_pool_create(&pool, &c), RDM_ERROR_ARGUMENT);
-  EXPECT_STREQ(rdm_last_error(), "task throws: build: an exception came out of it");
+  EXPECT_STREQ(rdm_last_error(), "task throws: build threw an exception");
   t.release = [&] {
     ++released;
     throw 1;
@@ -248,9 +248,9 @@ TEST(OwnTaskFailures, ABuildThatMakesItsOwnPoolEnds) {
   rdm_pool* p = nullptr;
   EXPECT_EQ(rdm_pool_create(&p, &c), RDM_ERROR_STATE);
   EXPECT_EQ(builds, 8);
-  EXPECT_EQ(
-      text,
-      "task builds_itself: build: 8 builds deep: a build made a pool whose build made a pool, and so on");
+  EXPECT_EQ(text,
+            "task builds_itself: build: 8 builds are nested: a build made a pool whose build made a pool, "
+            "and so on");
   t.build = nullptr;
   EXPECT_EQ(rdm_pool_create(&p, &c), RDM_OK) << rdm_last_error();
   rdm_pool_destroy(p);
@@ -402,9 +402,9 @@ TEST(OwnTaskBuilds, ARobotThatWasLeftOutIsNoShadowHand) {
   };
   change = [](rdm_scene_robot&) {};
   EXPECT_EQ(b.create(), RDM_ERROR_ARGUMENT);
-  EXPECT_EQ(
-      text,
-      "robot.robot of r: left out: of rdm_robot_find, in a struct that rdm_scene_robot_init has filled");
+  EXPECT_EQ(text,
+            "robot.robot of r is not set: fill the struct by rdm_scene_robot_init, then set the number that "
+            "rdm_robot_find gives");
   change = [](rdm_scene_robot& r) {
     EXPECT_EQ(rdm_scene_robot_init(&r, sizeof r), RDM_OK);
     r.name = "r";

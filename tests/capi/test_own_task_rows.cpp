@@ -185,7 +185,7 @@ TEST(OwnTaskRows, ARowThatFailsIsItsWorldsAlone) {
   }
   const auto text = [&](int32_t env) { return std::string(rdm_pool_world_error(t.pool, env)); };
   EXPECT_EQ(text(2), std::string("world 2: task rows_fail: judge: ") + rdm_result_string(RDM_ERROR_IO));
-  EXPECT_EQ(text(4), "world 4: task rows_fail: judge: cost speed is -1, less than 0");
+  EXPECT_EQ(text(4), "world 4: task rows_fail: judge: cost speed is -1, but it must be 0 or more");
   EXPECT_EQ(text(3), "");
 }
 

@@ -865,7 +865,7 @@ TEST(PlannerErrors, AWrongCallChangesNothing) {
   };
   action = 9;
   refused(rdm_planner_act(planner.get(), other.get(), 0, &action, nullptr), RDM_ERROR_ARGUMENT,
-          "pool: a pool of task lqr_line with other options");
+          "pool: it is a pool of task lqr_line with other options");
   refused(rdm_planner_act(planner.get(), pool.get(), 1, &action, nullptr), RDM_ERROR_RANGE, "env: 1");
   refused(rdm_planner_act(planner.get(), nullptr, 0, &action, nullptr), RDM_ERROR_ARGUMENT, "pool is NULL");
   refused(rdm_planner_act(planner.get(), pool.get(), 0, nullptr, nullptr), RDM_ERROR_ARGUMENT,

@@ -161,10 +161,10 @@ TEST(Points, ColoursAreSeen) {
   std::vector<uint8_t> colors(h.metres.size());
   for (size_t i = 0; i < colors.size(); ++i) colors[i] = static_cast<uint8_t>(i * 37);
   rdm_points seen = h.seen();
-  EXPECT_EQ(error_of(a, &seen, h, RDM_ERROR_ARGUMENT), "point_color: NULL, but the encoder reads colours");
+  EXPECT_EQ(error_of(a, &seen, h, RDM_ERROR_ARGUMENT), "point_color is NULL, but the encoder reads colours");
   seen.point_color = colors.data();
   seen.struct_size = offsetof(rdm_points, point_color);  // of an older host: as if it were NULL
-  EXPECT_EQ(error_of(a, &seen, h, RDM_ERROR_ARGUMENT), "point_color: NULL, but the encoder reads colours");
+  EXPECT_EQ(error_of(a, &seen, h, RDM_ERROR_ARGUMENT), "point_color is NULL, but the encoder reads colours");
   seen.struct_size = sizeof seen;
   auto t = redman::sized<rdm_transition>();
   t.reward = h.reward.data(), t.cost = h.cost.data();
@@ -201,20 +201,23 @@ TEST(Points, WhatIsWrongIsSaidInOneLine) {
   Host h;
   rdm_points seen = h.seen();
   EXPECT_EQ(rdm_agent_act(a.get(), h.obs.data(), RDM_ACT_SAMPLE, h.action.data()), RDM_ERROR_STATE);
-  EXPECT_STREQ(rdm_agent_error(a.get()), "act: the agent's encoder needs points");
-  EXPECT_EQ(error_of(blind, &seen, h, RDM_ERROR_STATE), "points: the agent has no encoder");
+  EXPECT_STREQ(rdm_agent_error(a.get()), "act: the agent's encoder needs points; call rdm_agent_act_points");
+  EXPECT_EQ(error_of(blind, &seen, h, RDM_ERROR_STATE),
+            "points: the agent has no encoder, so it cannot read them");
   EXPECT_EQ(error_of(a, nullptr, h, RDM_ERROR_ARGUMENT), "points is NULL");
   seen.struct_size = 0;
   EXPECT_EQ(error_of(a, &seen, h, RDM_ERROR_ARGUMENT), "points.struct_size: 0 is less than 24");
   seen = h.seen(), seen.points = nullptr;
   EXPECT_EQ(error_of(a, &seen, h, RDM_ERROR_ARGUMENT), "points.points is NULL");
   seen = h.seen(), seen.num_points = 31;
-  EXPECT_EQ(error_of(a, &seen, h, RDM_ERROR_RANGE), "points.num_points: 31, the encoder reads 32");
+  EXPECT_EQ(error_of(a, &seen, h, RDM_ERROR_RANGE), "points.num_points: it is 31, but the encoder reads 32");
   seen = h.seen(), seen.point_class = nullptr;
-  EXPECT_EQ(error_of(a, &seen, h, RDM_ERROR_ARGUMENT), "point_class: NULL, but the encoder reads 2 classes");
+  EXPECT_EQ(error_of(a, &seen, h, RDM_ERROR_ARGUMENT),
+            "point_class is NULL, but the encoder reads 2 classes");
   seen = h.seen();
   h.classes[40] = 2;
-  EXPECT_EQ(error_of(a, &seen, h, RDM_ERROR_RANGE), "point_class: row 1 has class 2, outside [0, 2)");
+  EXPECT_EQ(error_of(a, &seen, h, RDM_ERROR_RANGE),
+            "point_class: row 1 has class 2, which is outside [0, 2)");
   h.classes[40] = 0;
   h.metres[3 * kPoints * 7 + 5] = INFINITY;
   EXPECT_EQ(error_of(a, &seen, h, RDM_ERROR_ARGUMENT), "points: row 7 is not finite");
@@ -229,17 +232,17 @@ TEST(Points, WhatIsWrongIsSaidInOneLine) {
     return r == RDM_OK ? std::string() : std::string(rdm_last_error());
   };
   EXPECT_EQ(act(p, kEnvs, scratch.size()), "");
-  EXPECT_EQ(act(q, kEnvs, scratch.size()), "policy: it reads no points");
+  EXPECT_EQ(act(q, kEnvs, scratch.size()), "policy: it does not read points");
   EXPECT_EQ(act(p, 0, scratch.size()), "rows: 0 is less than 1");
   EXPECT_NE(act(p, kEnvs, scratch.size() - 1), "");
   h.metres[4] = NAN;
   EXPECT_EQ(act(p, kEnvs, scratch.size()), "points: row 0 is not finite");
   h.metres[4] = 0, h.classes[0] = 7;
-  EXPECT_EQ(act(p, kEnvs, scratch.size()), "point_class: row 0 has class 7, outside [0, 2)");
+  EXPECT_EQ(act(p, kEnvs, scratch.size()), "point_class: row 0 has class 7, which is outside [0, 2)");
   EXPECT_EQ(
       rdm_policy_act(p.get(), h.obs.data(), 1, nullptr, h.action.data(), scratch.data(), scratch.size()),
       RDM_ERROR_STATE);
-  EXPECT_STREQ(rdm_last_error(), "policy: it reads points, which rdm_policy_act_points takes");
+  EXPECT_STREQ(rdm_last_error(), "policy: it reads points; call rdm_policy_act_points");
 }
 
 TEST(Points, MemoryIsToldExactly) {
@@ -313,19 +316,19 @@ TEST(Points, ARolloutSeesWhatThePoolShows) {
 
   redman::Agent b = with((common + "encoder=8,16\nencoder_points=65").c_str());
   EXPECT_EQ(rdm_agent_rollout(b.get(), pool.get(), nullptr), RDM_ERROR_ARGUMENT);
-  EXPECT_STREQ(rdm_agent_error(b.get()), "encoder_points: the agent's encoder reads 65, the pool has 64");
+  EXPECT_STREQ(rdm_agent_error(b.get()), "encoder_points: the agent's encoder reads 65, but the pool has 64");
   // two hands, the object, anything else
   redman::Agent d = with((common + "encoder=8,16\nencoder_points=64\nencoder_classes=4").c_str());
   EXPECT_EQ(rdm_agent_rollout(d.get(), pool.get(), nullptr), RDM_OK) << rdm_agent_error(d.get());
   redman::Agent few = with((common + "encoder=8,16\nencoder_points=64\nencoder_classes=2").c_str());
   EXPECT_EQ(rdm_agent_rollout(few.get(), pool.get(), nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_STREQ(rdm_agent_error(few.get()),
-               "encoder_classes: the pool's points have 4 classes, the agent's encoder reads 2");
+               "encoder_classes: the pool's points have 4 classes, but the agent's encoder reads 2");
   redman::Pool blind(redman::pool_config("hand_over_safe_finger", 2));
   blind.reset();
   EXPECT_EQ(rdm_agent_rollout(a.get(), blind.get(), nullptr), RDM_ERROR_STATE);
   EXPECT_STREQ(rdm_agent_error(a.get()),
-               "pool: it has no points for the agent's encoder: option modality=points");
+               "pool: it has no points for the agent's encoder; set its option modality=points");
 
   auto plan = redman::sized<rdm_planner_config>();
   ASSERT_EQ(rdm_planner_config_init(&plan, sizeof plan), RDM_OK);

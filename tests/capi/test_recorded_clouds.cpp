@@ -96,9 +96,9 @@ TEST(RecordedClouds, ColoursAreKept) {
   redman::Recording plain(grey, 10);
   EXPECT_FALSE(plain.rows().point_color);
   EXPECT_EQ(rdm_recording_begin_step(r.get(), grey.get(), nullptr, nullptr), RDM_ERROR_ARGUMENT);
-  EXPECT_STREQ(rdm_recording_error(r.get()), "point_color: the recording has colours, the pool has none");
+  EXPECT_STREQ(rdm_recording_error(r.get()), "point_color: the recording has colours, but the pool has none");
   EXPECT_EQ(rdm_recording_append_all(plain.get(), r.get()), RDM_ERROR_ARGUMENT);
-  EXPECT_STREQ(rdm_recording_error(plain.get()), "other: one of the two has no colours");
+  EXPECT_STREQ(rdm_recording_error(plain.get()), "other: one of the two recordings has no colours");
 
   // whoever sees colours is not taught without them
   const auto agent = [&](const redman::Pool& of) {
@@ -149,7 +149,7 @@ TEST(RecordedClouds, AGoalIsSeen) {
   rdm_pool* p = nullptr;
   c.settings = "modality=points\ngoal_points=24";
   EXPECT_EQ(rdm_pool_create(&p, &c), RDM_ERROR_ARGUMENT);
-  EXPECT_NE(std::string(rdm_last_error()).find("goal_points: task jenga brings no object to a pose"),
+  EXPECT_NE(std::string(rdm_last_error()).find("goal_points: task jenga has no object with a goal pose"),
             std::string::npos);
 }
 

@@ -428,7 +428,7 @@ TEST(ShieldRefusals, OfPlans) {
   refused(shield, 10, RDM_ERROR_ARGUMENT, "entry 3");
   plan[3] = 0;
   for (size_t d = 0; d < 10; ++d) plan[d * dim + 2] = 1;  // FF4 to the end of its range
-  refused(shield, 10, RDM_ERROR_STATE, "world 1: by the plan cost column 0");
+  refused(shield, 10, RDM_ERROR_STATE, "world 1: under the plan cost column 0");
   ASSERT_EQ(rdm_shield_get_plan(shield.get(), pool.get(), 1, nullptr, 0, &after), RDM_OK);
   EXPECT_EQ(after, size);
 }

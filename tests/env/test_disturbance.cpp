@@ -297,7 +297,7 @@ TEST(Disturbance, ASavedStateGoesOnWithTheSameBytes) {
   TestPool a("toy_push", 1, {}, config(kAll)), plain("toy_push", 1, {}, config(nullptr));
   const auto state = a.state();
   EXPECT_EQ(code_of([&] { plain->set_state(-1, state.data(), state.size()); }), Code::kFormat);
-  EXPECT_STREQ(last_error(), "state: of a pool of task toy_push with other options");
+  EXPECT_STREQ(last_error(), "state: it belongs to a pool of task toy_push with other options");
 }
 
 TEST(Disturbance, AStateWithWhatNoWorldDrawsIsRefused) {

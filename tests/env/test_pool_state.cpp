@@ -123,7 +123,7 @@ TEST(PoolState, ABadRecordLeavesNoTrace) {
   run(a, 2);
   const uint64_t before = a->hash(-1);
   EXPECT_EQ(code_of([&] { a->set_state(-1, state.data(), state.size()); }), Code::kFormat);
-  EXPECT_STREQ(last_error(), "state: phase 200");
+  EXPECT_STREQ(last_error(), "state: a phase is 200, which does not exist");
   EXPECT_EQ(a->hash(-1), before);
 }
 

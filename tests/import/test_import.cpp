@@ -81,7 +81,7 @@ TEST(Import, UrdfBecomesAHand) {
        {"line 4: material grey", "line 11: visual", "line 140: gazebo", "line 141: transmission t"})
     EXPECT_TRUE(i.has_note(RDM_NOTE_DROPPED, text)) << text;
   EXPECT_EQ(i.notes(RDM_NOTE_DROPPED).size(), 4u);
-  EXPECT_TRUE(i.has_note(RDM_NOTE_CHANGED, "line 139: index_tip is fixed: part of index_distal"));
+  EXPECT_TRUE(i.has_note(RDM_NOTE_CHANGED, "line 139: index_tip is fixed and was merged into index_distal"));
 }
 
 TEST(Import, RolesAreGuessedAndListed) {
@@ -126,7 +126,7 @@ TEST(Import, OptionsThatAFormatDoesNotTakeAreRefused) {
     set(o);
     expect_refused(bytes, RDM_ERROR_ARGUMENT, text, &o);
   };
-  refused(read("hand.xml"), "config.density: of URDF alone; a geom of MJCF says its own mass or density",
+  refused(read("hand.xml"), "config.density: it is for URDF only; a geom of MJCF has its own mass or density",
           [](auto& o) { o.density = 1000; });
   const std::string robot = written(from_file("hand.urdf").def);
   for (const auto& [name, set] : std::initializer_list<std::pair<const char*, void (*)(rdm_import_config&)>>{
@@ -137,7 +137,8 @@ TEST(Import, OptionsThatAFormatDoesNotTakeAreRefused) {
            {"tips", [](auto& o) { o.tips = "index_distal"; }},
            {"mount", [](auto& o) { o.mount = "palm"; }},
            {"flange", [](auto& o) { o.flange = "none"; }}})
-    refused(robot, std::string("config.") + name + ": of URDF and MJCF; a .robot file says it itself", set);
+    refused(robot,
+            std::string("config.") + name + ": it is for URDF and MJCF only; a .robot file contains it", set);
 }
 
 TEST(Import, MjcfIsTheSameHand) {
@@ -222,7 +223,7 @@ TEST(Import, GrippersHaveRailsOffsetsAndMeshes) {
   EXPECT_NEAR(head.moment[0], 2e-4 + 2 * 0.5 * 0.05 * 0.05, 1e-12);
   EXPECT_NEAR(head.moment[1], 3e-4, 1e-12);
   EXPECT_STREQ(d.links[1].name, "jaw_a");
-  EXPECT_TRUE(i.has_note(RDM_NOTE_CHANGED, "line 43: link jaw.a is called jaw_a"));
+  EXPECT_TRUE(i.has_note(RDM_NOTE_CHANGED, "line 43: link jaw.a was renamed to jaw_a"));
   EXPECT_EQ(d.links[1].kind, RDM_JOINT_PRISMATIC);
   // jaw_b = jaw_a + 0.01: its 0 is where it stood at 0.01.
   ASSERT_EQ(d.num_couplings, 1);
@@ -286,19 +287,20 @@ TEST(Import, ChecksTellWhatTouchesAndWhatShakes) {
   const Import weak = from_text(text);
   ASSERT_EQ(rdm_import_check(weak.handle), RDM_OK) << rdm_import_error();
   EXPECT_TRUE(weak.has_note(RDM_NOTE_CHECK, "joint yaw does not reach"));
-  EXPECT_TRUE(weak.has_note(RDM_NOTE_CHECK, "joint pitch shakes at home"));
+  EXPECT_TRUE(weak.has_note(RDM_NOTE_CHECK, "joint pitch does not settle in the home pose"));
   const Import hand = from_file("hand.urdf");
   ASSERT_EQ(rdm_import_check(hand.handle), RDM_OK) << rdm_import_error();
-  EXPECT_TRUE(hand.has_note(RDM_NOTE_CHECK,
-                            "joint thumb_bend alone, from 0.844 to 1.5: palm_box and thumb_distal touch"));
+  EXPECT_TRUE(
+      hand.has_note(RDM_NOTE_CHECK,
+                    "while joint thumb_bend alone moves from 0.844 to 1.5, palm_box and thumb_distal touch"));
   // A pair that overlaps at home is left out by the importer; written in, it is told.
   const Import gripper = from_file("gripper.urdf");
-  EXPECT_TRUE(gripper.has_note(RDM_NOTE_CHANGED, "jaw_a and jaw_b overlap at home"));
+  EXPECT_TRUE(gripper.has_note(RDM_NOTE_CHANGED, "jaw_a and jaw_b overlap in the home pose"));
   std::string with = written(gripper.def);
   with.insert(with.find("\n[root]"), "pairs = [[\"jaw_a\", \"jaw_b\"]]\n");
   const Import crossed = from_text(with);
   ASSERT_EQ(rdm_import_check(crossed.handle), RDM_OK) << rdm_import_error();
-  EXPECT_TRUE(crossed.has_note(RDM_NOTE_CHECK, "at home jaw_a touches jaw_b"));
+  EXPECT_TRUE(crossed.has_note(RDM_NOTE_CHECK, "in the home pose jaw_a touches jaw_b"));
 }
 
 // ---- text ----
@@ -435,24 +437,25 @@ TEST(Refusals, Urdf) {
        {"<mass value=\"0.02\"", "<mass value=\"-1\"", RDM_ERROR_RANGE,
         "line 26: mass: link index_proximal: the mass -1 is not above 0"},
        {"<mass value=\"0.02\"", "<mass value=\"nan\"", RDM_ERROR_FORMAT,
-        "line 26: mass: value: nan is no number"},
+        "line 26: mass: value: nan is not a number"},
        {"izz=\"1e-6\"", "izz=\"7e-6\"", RDM_ERROR_ARGUMENT,
         "line 26: inertia: link index_proximal: the principal moments of inertia 3e-06, 3e-06, 7e-06 break "
-        "the triangle rule"},
+        "the triangle inequality"},
        {"ixx=\"3e-6\"", "ixx=\"-3e-6\"", RDM_ERROR_ARGUMENT,
         "line 26: inertia: link index_proximal: the principal moments of inertia -3e-06"},
        {"lower=\"0\" upper=\"1.5\"", "lower=\"1\" upper=\"1\"", RDM_ERROR_RANGE,
         "line 22: limit: joint index_bend: the range [1, 1] is empty"},
        {"<limit lower=\"0\" upper=\"1.5\" effort=\"0.8\" velocity=\"6\"/>", "", RDM_ERROR_FORMAT,
-        "line 17: joint index_bend: no limit"},
+        "line 17: joint index_bend: it has no limit"},
        {"<child link=\"middle_proximal\"/>", "<child link=\"index_proximal\"/>", RDM_ERROR_ARGUMENT,
-        "line 46: joint middle_bend: link index_proximal has two parents: joint index_bend of line 17 too"},
+        "line 46: joint middle_bend: link index_proximal has two parents: this joint and joint index_bend of "
+        "line 17"},
        {"<parent link=\"palm\"/>", "<parent link=\"index_distal\"/>", RDM_ERROR_ARGUMENT,
-        "it hangs in a loop of joints"},
+        "it is in a loop of joints"},
        {"<parent link=\"palm\"/>", "<parent link=\"plam\"/>", RDM_ERROR_NOT_FOUND,
-        "line 17: joint index_bend: parent plam: there is no such link; nearest is palm"},
+        "line 17: joint index_bend: parent plam: there is no link of this name; nearest is palm"},
        {"<box size=\"0.09 0.03 0.1\"/>", "<mesh filename=\"palm.stl\"/>", RDM_ERROR_NOT_FOUND,
-        "line 14: mesh: mesh palm.stl: a text alone has no folder"},
+        "line 14: mesh: mesh palm.stl: a text that is not from a file has no folder"},
        {"<box size=\"0.09 0.03 0.1\"/>", "<box size=\"0.09 0.03\"/>", RDM_ERROR_FORMAT,
         "line 14: box: size: 0.09 0.03 is not 3 numbers"},
        {"<box size=\"0.09 0.03 0.1\"/>", "<box size=\"0.09 0 0.1\"/>", RDM_ERROR_RANGE,
@@ -468,12 +471,12 @@ TEST(Refusals, Urdf) {
        {"<mimic joint=\"ring_bend\"", "<mimic joint=\"ring_curl\"", RDM_ERROR_ARGUMENT,
         "line 96: mimic: joint ring_curl follows itself"},
        {"<link name=\"index_distal\">", "<link name=\"index_proximal\">", RDM_ERROR_ARGUMENT,
-        "line 39: link index_proximal: it stands twice"},
+        "line 39: link index_proximal: it occurs twice"},
        {"<link name=\"index_tip\"/>", "<link name=\"index_tip\"/><link name=\"lost\"/>", RDM_ERROR_ARGUMENT,
-        "line 139: link lost: no joint carries it, nor link palm of line 5"},
+        "line 139: link lost: it has no parent joint, and neither has link palm of line 5"},
        {"<inertial><origin xyz=\"0 0 0.012\"/><mass value=\"0.01\"/><inertia ixx=\"1e-6\" iyy=\"1e-6\" "
         "izz=\"5e-7\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial>",
-        "", RDM_ERROR_RANGE, "line 39: link index_distal: it moves and has no mass"},
+        "", RDM_ERROR_RANGE, "line 39: link index_distal: it moves, but has no mass"},
        {"</robot>", "", RDM_ERROR_FORMAT, "no XML"},
        {"<robot name=\"plain_hand\">", "<robot name=\"plain_hand\"><xacro:arg name=\"x\"/>",
         RDM_ERROR_UNSUPPORTED, "line 3: xacro:arg x: xacro is not read"}});
@@ -487,14 +490,14 @@ TEST(Refusals, Mjcf) {
         "line 29: inertial: body index_proximal: the mass 0 is not above 0"},
        {"diaginertia=\"3e-6 3e-6 1e-6\"", "diaginertia=\"3e-6 3e-6 7e-6\"", RDM_ERROR_ARGUMENT,
         "line 29: inertial: body index_proximal: the principal moments of inertia 3e-06, 3e-06, 7e-06 break "
-        "the triangle rule"},
+        "the triangle inequality"},
        {"name=\"index_bend\" class=\"bend\"", "name=\"index_bend\" class=\"bent\"", RDM_ERROR_NOT_FOUND,
         "line 30: joint index_bend: there is no class bent; nearest is bend"},
        {"name=\"index_bend\" class=\"bend\"", "name=\"index_bend\" range=\"3 1\"", RDM_ERROR_RANGE,
         "line 30: joint index_bend: the range [3, 1] is empty"},
        {"name=\"index_bend\" class=\"bend\"", "name=\"index_bend\" type=\"ball\"", RDM_ERROR_UNSUPPORTED,
         "line 30: joint index_bend: type ball"},
-       {"name=\"middle_bend\"", "name=\"index_bend\"", RDM_ERROR_ARGUMENT, "joint index_bend stands twice"},
+       {"name=\"middle_bend\"", "name=\"index_bend\"", RDM_ERROR_ARGUMENT, "joint index_bend occurs twice"},
        {"<geom size=\"0.008\" fromto", "<geom type=\"mesh\" mesh=\"bone\" fromto", RDM_ERROR_NOT_FOUND,
         "line 31: geom: there is no mesh bone"},
        {"<geom size=\"0.008\" fromto=\"0 0 0.008 0 0 0.032\"/>", "<geom type=\"mesh\" mesh=\"bone\"/>",
@@ -517,7 +520,7 @@ TEST(Refusals, Mjcf) {
         "<actuator><position joint=\"index_bend\" ctrlrange=\"4 5\"/></actuator>", RDM_ERROR_RANGE,
         "line 30: joint index_bend: its actuator's range [4, 5]"},
        {"</worldbody>", "<body name=\"ball\"/></worldbody>", RDM_ERROR_ARGUMENT,
-        "line 70: body ball: 2 bodies stand in the world: config.root"},
+        "line 70: body ball: there are 2 bodies in the world: set config.root"},
        {"angle=\"degree\"", "angle=\"turn\"", RDM_ERROR_FORMAT,
         "line 3: compiler: angle: turn is neither degree nor radian"}});
 }
@@ -529,12 +532,12 @@ TEST(Refusals, RobotText) {
                                                    good.begin() + static_cast<long>(good.find(what)), '\n'));
   };
   const std::string
-      stiff = line("kp = 4.0") + ": link index_proximal: kpp is no key; nearest is kp",
-      kind = line("kind = \"hand\"") + ": kind: hant is not known; nearest is hand",
+      stiff = line("kp = 4.0") + ": link index_proximal: kpp is not a known key; nearest is kp",
+      kind = line("kind = \"hand\"") + ": kind: hant is unknown; nearest is hand",
       parent =
           line("parent = \"index_proximal\"") +
           ": link index_distal: parent: there is no link index_proxima before it; nearest is index_proximal",
-      range = line("range = ") + ": link index_proximal: range is no list of 2 numbers",
+      range = line("range = ") + ": link index_proximal: range is not a list of 2 numbers",
       shape = line("  [\"palm_box\", \"index_distal\"]") +
               ": pairs: there is no shape palm_bax; nearest is palm_box";
   expect_refusals(
@@ -545,12 +548,13 @@ TEST(Refusals, RobotText) {
        {"range = [0.0, 1.5]", "range = [0.0]", RDM_ERROR_FORMAT, range.c_str()},
        {"[\"palm_box\", \"index_distal\"]", "[\"palm_bax\", \"index_distal\"]", RDM_ERROR_NOT_FOUND,
         shape.c_str()},
-       {"format = 1", "format = 2", RDM_ERROR_VERSION_MISMATCH, "line 2: format: this library reads 1"},
+       {"format = 1", "format = 2", RDM_ERROR_VERSION_MISMATCH,
+        "line 2: format: this library reads format 1 only"},
        {"range = [0.0, 1.5]", "range = [1.0, 1.0]", RDM_ERROR_RANGE,
         "robot plain_hand: index_bend: the range [1, 1] is empty"},
        {"name = \"plain_hand\"", "name = \"plain hand\"", RDM_ERROR_ARGUMENT, "a name is made of letters"},
        {"mass = 0.4", "mass = ", RDM_ERROR_FORMAT, "line "},
-       {"[root]", "[roof]", RDM_ERROR_FORMAT, "roof is no key; nearest is root"}});
+       {"[root]", "[roof]", RDM_ERROR_FORMAT, "roof is not a known key; nearest is root"}});
 }
 
 TEST(Refusals, OptionsOfTheCall) {
@@ -568,13 +572,13 @@ TEST(Refusals, OptionsOfTheCall) {
   refused("hand.urdf", o, RDM_ERROR_NOT_FOUND, "config.root: there is no link nowhere");
   refused("hand.xml", o, RDM_ERROR_NOT_FOUND, "config.root: there is no body nowhere");
   o = import_config(), o.mount = "index_distal";
-  refused("hand.urdf", o, RDM_ERROR_ARGUMENT, "config.mount: index_distal moves against the root");
+  refused("hand.urdf", o, RDM_ERROR_ARGUMENT, "config.mount: index_distal moves relative to the root");
   o = import_config(), o.format = 7;
   refused("hand.urdf", o, RDM_ERROR_RANGE, "config.format: 7 is outside [0, 3]");
   o = import_config(), o.struct_size = 3;
   refused("hand.urdf", o, RDM_ERROR_ARGUMENT, "config.struct_size: 3");
   o = import_config(), o.format = RDM_IMPORT_MJCF;
-  refused("hand.urdf", o, RDM_ERROR_FORMAT, "no MJCF: the first element is not mujoco");
+  refused("hand.urdf", o, RDM_ERROR_FORMAT, "this is not MJCF: the first element is not mujoco");
   o = import_config();
   refused("none.urdf", o, RDM_ERROR_NOT_FOUND, "none.urdf: cannot open");
   // A part of a tree, meshes that are not there, moments that are mended.
@@ -587,8 +591,9 @@ TEST(Refusals, OptionsOfTheCall) {
   ASSERT_EQ(rdm_import_read(&made, text.data(), text.size(), &o), RDM_OK) << rdm_import_error();
   const Import mended(made);
   EXPECT_EQ(mended.def.num_shapes, 1);
-  EXPECT_TRUE(mended.has_note(RDM_NOTE_DROPPED,
-                              "line 50: mesh package://gripper_description/meshes/pad.obj: a text alone"));
+  EXPECT_TRUE(mended.has_note(
+      RDM_NOTE_DROPPED,
+      "line 50: mesh package://gripper_description/meshes/pad.obj: a text that is not from a file"));
   EXPECT_TRUE(mended.has_note(RDM_NOTE_CHANGED, "line 46: link jaw.a: principal moments"));
   EXPECT_NEAR(mended.def.links[1].moment[2], 4e-5, 1e-12);
 }

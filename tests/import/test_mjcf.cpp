@@ -103,7 +103,7 @@ TEST(Mjcf, RangesHoldWhereTheySaySo) {
     EXPECT_EQ(i.has_note(RDM_NOTE_CHANGED, "without end"), r.upper > 6);
   }
   expect_refused(file(arm(kRod, "range='-90 90'"), "<compiler autolimits='false'/>"), RDM_ERROR_FORMAT,
-                 "joint j: a range and no limited, where autolimits is false");
+                 "joint j: it has a range but no limited, and autolimits is false");
   expect_refused(file(arm(kRod, "range='0 0' limited='true'")), RDM_ERROR_RANGE,
                  "joint j: the range [0, 0] is empty");
 }
@@ -112,7 +112,8 @@ TEST(Mjcf, RangesHoldWhereTheySaySo) {
 // As in Fetch's base, which slides nowhere by it.
 TEST(Mjcf, ADampingThatHoldsAJointStillIsTheLargest) {
   const Import i = from_text(file(arm(kRod, "type='slide' range='-1 1' damping='1e11'")));
-  EXPECT_TRUE(i.has_note(RDM_NOTE_CHANGED, "joint j: damping 1e+11 is 1e+06, the most that a joint has"));
+  EXPECT_TRUE(i.has_note(RDM_NOTE_CHANGED,
+                         "joint j: damping 1e+11 was reduced to 1e+06, the largest that is allowed"));
   EXPECT_EQ(i.def.links[0].kd, 1e6);
 }
 
@@ -147,7 +148,8 @@ TEST(Mjcf, TheTotalMassOfAllBodiesIsSet) {
   EXPECT_NEAR(i.def.links[0].mass, 4, 1e-12);
   EXPECT_NEAR(i.def.root_mass, 16, 1e-12);
   EXPECT_NEAR(i.def.links[0].moment[0], 0.4 * 4 * 0.05 * 0.05, 1e-12);
-  EXPECT_TRUE(i.has_note(RDM_NOTE_CHANGED, "all masses times 10: together 20 kg (settotalmass)"));
+  EXPECT_TRUE(
+      i.has_note(RDM_NOTE_CHANGED, "all masses were scaled by 10 to a total of 20 kg (settotalmass)"));
   // Also of the bodies that options.root leaves out.
   rdm_import_config o = import_config();
   o.root = "arm";
@@ -164,7 +166,7 @@ TEST(Mjcf, BoundsOfMassesAreOfPrincipalMoments) {
   EXPECT_NEAR(bound.def.links[0].moment[2], 2.5e-3, 1e-15);
   EXPECT_NEAR(bound.def.links[0].moment[3], 0, 1e-15);
   const std::string wrong = arm("<inertial pos='0 0 .1' mass='1' diaginertia='1e-3 1e-3 4e-3'/>");
-  expect_refused(file(wrong), RDM_ERROR_ARGUMENT, "break the triangle rule");
+  expect_refused(file(wrong), RDM_ERROR_ARGUMENT, "violate the triangle inequality");
   EXPECT_NEAR(from_text(file(wrong, "<compiler balanceinertia='true'/>")).def.links[0].moment[2], 2e-3,
               1e-15);
   // A body without any mass gets the least, where its own frame stands in what carries it.
@@ -181,7 +183,7 @@ TEST(Mjcf, InertiaComesFromGeomsWhereTheCompilerSaysSo) {
   EXPECT_DOUBLE_EQ(from_text(file(both, "<compiler inertiafromgeom='true'/>")).def.links[0].mass, 0.5);
   EXPECT_DOUBLE_EQ(from_text(file(both, "<compiler inertiafromgeom='false'/>")).def.links[0].mass, 3);
   expect_refused(file(arm(kRod), "<compiler inertiafromgeom='false'/>"), RDM_ERROR_RANGE,
-                 "body arm: it moves and has no inertial, and inertiafromgeom is false");
+                 "body arm: it moves but has no inertial, and inertiafromgeom is false");
 }
 
 TEST(Mjcf, FixedBodiesMayHaveNoMass) {
@@ -199,7 +201,7 @@ TEST(Mjcf, FixedBodiesMayHaveNoMass) {
   expect_refused(file(arm("<inertial pos='0 0 0' mass='0' diaginertia='1 1 1'/>")), RDM_ERROR_RANGE,
                  "body arm: the mass 0 is not above 0");
   expect_refused(file(arm("<inertial pos='0 0 0' mass='0' diaginertia='0 0 0'/>")), RDM_ERROR_RANGE,
-                 "it moves and has no mass");
+                 "it moves, but has no mass");
 }
 
 TEST(Mjcf, ShellsHaveTheMassOfTheirSurface) {
@@ -334,12 +336,13 @@ TEST(Mjcf, MassesOfMeshesThatAreNotThereAreRefused) {
   const std::string asset = "<asset><mesh name='m' file='m.obj'/></asset>";
   const std::string geom = "<geom type='mesh' mesh='m'/>";
   expect_refused(file(arm(geom), asset), RDM_ERROR_NOT_FOUND,
-                 "the mass of body arm would be that of mesh m, which cannot be read", &o);
+                 "the mass of body arm would come from mesh m, which cannot be read", &o);
   const Import i =
       from_text(file(arm("<inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/>" + geom), asset), &o);
   EXPECT_DOUBLE_EQ(i.def.links[0].mass, 1);
   expect_refused(file(arm(geom), "<asset><mesh name='m' builtin='cone' params='8 .5'/></asset>"),
-                 RDM_ERROR_UNSUPPORTED, "mesh m: builtin=\"cone\": a shape that MuJoCo makes is not read");
+                 RDM_ERROR_UNSUPPORTED,
+                 "mesh m: builtin=\"cone\": shapes that MuJoCo generates are not read");
   expect_refused(file(arm("<geom type='mesh' mesh='m'/>"),
                       "<asset><mesh name='m' vertex='0 0 0 1 0 0 0 1 0 1 1 0'/></asset>"),
                  RDM_ERROR_RANGE, "mesh m encloses nothing");
@@ -416,7 +419,7 @@ TEST(Mjcf, GroupsOfCouplingsHaveOneLeader) {
       chain(2,
             "<equality><joint joint1='j0' joint2='j1'/><joint joint1='j0' joint2='j1' polycoef='0 2'/>"
             "</equality>"),
-      RDM_ERROR_ARGUMENT, "joint j0 follows two others");
+      RDM_ERROR_ARGUMENT, "joint j0 follows two other joints");
 }
 
 TEST(Mjcf, EqualitiesOfTendonsCouple) {
@@ -429,7 +432,7 @@ TEST(Mjcf, EqualitiesOfTendonsCouple) {
                 .def.num_couplings,
             0);
   expect_refused(chain(2, tendon + "<equality><tendon tendon1='t' tendon2='s'/></equality>"),
-                 RDM_ERROR_UNSUPPORTED, "of tendons only a fixed one of two joints is read");
+                 RDM_ERROR_UNSUPPORTED, "only a fixed tendon of two joints");
 }
 
 // ---- drives ----
@@ -493,37 +496,38 @@ TEST(Mjcf, WhatCouldChangeTheRobotIsRefusedByName) {
   };
   const std::vector<Row> rows{
       {file(arm(kRod, "axis='0 1 0' rang='-1 1'")),
-       "joint j: rang is no attribute that is known here, and it could "
+       "joint j: rang is not a known attribute here, and it could "
        "change the robot; nearest is range"},
       {file(body, "<compiler setotalmass='3'/>"),
-       "setotalmass is no attribute that is known here, and it could change "
+       "setotalmass is not a known attribute here, and it could change "
        "the robot; nearest is settotalmass"},
-      {file(body, "<compiler coordinate='global'/>"), "coordinate: only local is read"},
+      {file(body, "<compiler coordinate='global'/>"), "coordinate: only local is supported"},
       {file(body, "<option><flag limit='disable'/></option>"),
-       "flag: limit=\"disable\": the file's ranges or couplings"},
-      {file(body, "<default><geom densty='3'/></default>"), "geom: densty is no attribute"},
+       "flag: limit=\"disable\": the ranges or couplings of the file"},
+      {file(body, "<default><geom densty='3'/></default>"), "geom: densty is not a known attribute"},
       {file(body + "<bdy name='x'/>"),
-       "bdy x: no element that is known in body, and it could change the robot; nearest "
+       "bdy x: this is not a known element in body, and it could change the robot; nearest "
        "is body"},
       {file(body, "", "<actuators/>"),
-       "actuators: no element that is known in mujoco, and it could change the robot; "
+       "actuators: this is not a known element in mujoco, and it could change the robot; "
        "nearest is actuator"},
-      {file(body + "<replicate count='2'/>"), "replicate: it would make bodies"},
-      {file(body + "<attach model='x' prefix=''/>"), "attach: it would make bodies"},
-      {file(body + "<composite type='cable'/>"), "composite: it would make bodies"},
-      {file(body + "<flexcomp name='x'/>"), "flexcomp x: it would make bodies"},
+      {file(body + "<replicate count='2'/>"), "replicate: it would create bodies"},
+      {file(body + "<attach model='x' prefix=''/>"), "attach: it would create bodies"},
+      {file(body + "<composite type='cable'/>"), "composite: it would create bodies"},
+      {file(body + "<flexcomp name='x'/>"), "flexcomp x: it would create bodies"},
       {file(body, "", "<deformable><flex name='x' body='arm' element='0'/></deformable>"),
-       "flex x: bodies that bend"},
+       "flex x: deformable bodies"},
       {file(body, "", "<equality><weld body1='arm' body2='base'/></equality>"),
        "weld: weld closes a loop of bodies"},
       {file(body, "", "<equality><joint joint1='j'/></equality>"),
-       "a joint held at one place: make it fixed"},
-      {file("<body mocap='true'>" + body + "</body>"), "mocap: a body that its host moves is not read"},
+       "it holds a joint at one position; remove the joint instead"},
+      {file("<body mocap='true'>" + body + "</body>"), "mocap: a body that the host moves is not read"},
       {file(body, "", "<actuator><position joint='j' armature='.1'/></actuator>"),
-       "armature=\".1\": it is not read of"},
-      {file(arm(kRod, "range='-1 1' damping='1 .2'")), "damping: a polynomial is not read"},
+       "armature=\".1\": it is not read from"},
+      {file(arm(kRod, "range='-1 1' damping='1 .2'")),
+       "damping: only the first number of a polynomial is read"},
       {file(arm("<frame><inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/></frame>")),
-       "frame: an inertial stands in a "
+       "frame: an inertial must be in a "
        "body, not in a frame"},
       {"<mujocoinclude><worldbody/></mujocoinclude>", "a part that other files include"},
   };
@@ -553,8 +557,7 @@ TEST(Mjcf, WhatStandsBehindTheRootIsListed) {
   EXPECT_FALSE(from_text(whole + "<!-- the end -->\n").has_note(RDM_NOTE_DROPPED, "behind"));
   for (const char* more :
        {"\n</mujoco>", "\n<mujoco><worldbody><body name='c'/></worldbody></mujoco>", "\n<x/>"})
-    EXPECT_TRUE(from_text(whole + more).has_note(RDM_NOTE_DROPPED, "what stands behind the end of <mujoco>"))
-        << more;
+    EXPECT_TRUE(from_text(whole + more).has_note(RDM_NOTE_DROPPED, "text after the end of <mujoco>")) << more;
 }
 
 // A target that a host moves, of nothing that touches, is no robot and no reason to ask which is.
@@ -568,7 +571,7 @@ TEST(Mjcf, TargetsOfTheHostAreDropped) {
   o.root = "world";
   const Import i = from_text(text, &o);
   EXPECT_EQ(i.def.num_shapes, 2);
-  EXPECT_TRUE(i.has_note(RDM_NOTE_DROPPED, "body goal: its host moves it (mocap)"));
+  EXPECT_TRUE(i.has_note(RDM_NOTE_DROPPED, "body goal: the host moves it (mocap)"));
   o.root = "goal";
   expect_refused(text, RDM_ERROR_UNSUPPORTED, "body goal: mocap", &o);
 }
@@ -585,7 +588,7 @@ TEST(Mjcf, TiesToTargetsOfTheHost) {
   EXPECT_TRUE(i.has_note(RDM_NOTE_DROPPED, "weld : neither of its bodies moves"));
   EXPECT_EQ(from_text(text("<weld body1='base'/>")).def.num_links, 1);
   expect_refused(text("<weld body1='goal' body2='arm'/>"), RDM_ERROR_UNSUPPORTED,
-                 "weld ties a body to goal, which its host moves (mocap): it is not read; without the weld");
+                 "weld ties a body to goal, which the host moves (mocap), and is not read; remove the weld");
   expect_refused(text("<connect body1='base' body2='arm' anchor='0 0 0'/>"), RDM_ERROR_UNSUPPORTED,
                  "connect closes a loop of bodies");
 }
@@ -597,14 +600,14 @@ TEST(Mjcf, LimitsOfTendonsOfOneJointAreTheJoints) {
   const Import i = from_text(text("range='-.8 -.2'><joint joint='j0' coef='-2'/>"));
   EXPECT_NEAR(i.def.links[0].lower, 0.1, 1e-12);
   EXPECT_NEAR(i.def.links[0].upper, 0.4, 1e-12);
-  EXPECT_TRUE(i.has_note(RDM_NOTE_CHANGED, "tendon t: joint j0 goes from 0.1 to 0.4"));
+  EXPECT_TRUE(i.has_note(RDM_NOTE_CHANGED, "tendon t: it limits joint j0 to 0.1 to 0.4"));
   EXPECT_DOUBLE_EQ(from_text(text("range='-9 9'><joint joint='j0' coef='2'/>")).def.links[0].upper, 1);
   expect_refused(text("range='4 5'><joint joint='j0' coef='2'/>"), RDM_ERROR_RANGE,
                  "its range leaves joint j0");
   std::string spatial = chain(1,
                               "<tendon><spatial limited='true' range='0 1'><site site='a'/><site "
                               "site='b'/></spatial></tendon>");
-  expect_refused(spatial, RDM_ERROR_UNSUPPORTED, "spatial: the range 0 1 of its length would tie joints");
+  expect_refused(spatial, RDM_ERROR_UNSUPPORTED, "spatial: the range 0 1 of its length would couple joints");
   spatial.replace(spatial.find("'true'"), 6, "'false'");
   EXPECT_EQ(from_text(spatial).def.num_links, 1);
 }
@@ -627,15 +630,15 @@ TEST(Mjcf, InertialsOfAMassAloneArePoints) {
   const std::string point = "<inertial pos='0 0 .1' mass='2'/>";
   const Import i = from_text(file(arm(kRod + "<body name='tool'>" + point + "</body>")));
   EXPECT_NEAR(i.def.links[0].mass, 2.1, 1e-12);
-  expect_refused(file(arm(point)), RDM_ERROR_ARGUMENT, "it moves, and its moments of inertia are 0");
+  expect_refused(file(arm(point)), RDM_ERROR_ARGUMENT, "it moves, but its moments of inertia are 0");
 }
 
 TEST(Mjcf, WhatStandsTwiceIsRefused) {
   const std::string inertial = "<inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/>";
   expect_refused(file(arm(inertial + inertial)), RDM_ERROR_FORMAT,
-                 "inertial: a second one, after that of line 1");
+                 "inertial: there is already one in line 1");
   expect_refused(file(arm(kRod, "axis='0 1 0' axis='1 0 0' range='0 1'")), RDM_ERROR_FORMAT,
-                 "an attribute that is not name=\"value\", or stands twice");
+                 "an attribute that is not name=\"value\", or occurs twice");
 }
 
 // The surface alone of a mesh: an octahedron of edge sqrt(2) has 4 sqrt(3) of it, its points at 1 from the middle.

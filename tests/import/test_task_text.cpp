@@ -385,52 +385,54 @@ struct Wrong {
 TEST(TaskText, RefusalsNameLineAndKey) {
   const std::string good = with("");
   for (const Wrong& w : std::vector<Wrong>{
-           {"[task]", "[tsk]", "t.task: line 1: tsk is no key; nearest is task"},
+           {"[task]", "[tsk]", "t.task: line 1: tsk is not a known key; nearest is task"},
            {"max_steps = 200", "max_steps = 0",
-            "t.task: line 3: task: max_steps: 0 is no whole number of [1, 100000]"},
+            "t.task: line 3: task: max_steps: 0 is not a whole number in [1, 100000]"},
            {"frequency = 50", "frequncy = 50",
-            "line 6: options: frequncy: it is none that every task has; nearest is frequency"},
+            "line 6: options: frequncy: no task has an option of this name; nearest is frequency"},
            {"default = 0.5", "default = 5", "line 7: options: far: default: 5 is outside [0, 2]"},
            {"p = [0, 0, 0.5]", "p = [\"0..1\", 0, 0.5]",
-            "line 8: tree cart: p, rpy: a tree whose base is fixed is not moved at a reset"},
+            "line 8: tree cart: p, rpy: a tree with a fixed base cannot be moved at a reset, so no range is "
+            "allowed"},
            {"\"position\"", "\"postion\"",
-            "line 11: tree cart: control: postion is not known; nearest is position"},
-           {"kp = 400", "kpp = 400", "line 19: tree cart: link box: kpp is no key; nearest is kp"},
+            "line 11: tree cart: control: postion is unknown; nearest is position"},
+           {"kp = 400", "kpp = 400", "line 19: tree cart: link box: kpp is not a known key; nearest is kp"},
            {"mass = 1\n", "mass = \"$mas\"\n", "line 22: tree cart: link box: mass: option mas: unknown"},
-           {"kind = \"sphere\"", "kind = \"ball\"", "line 31: body ball: kind: ball is not known"},
+           {"kind = \"sphere\"", "kind = \"ball\"", "line 31: body ball: kind: ball is unknown"},
            {"mass = 0.5", "mass = -1", "line 29: body ball: body ball: mass -1 is not above 0"},
            {"kind = \"sphere\"\nsize = [0.04]\nmass = 0.5", "object = \"mugg\"",
             "line 31: body ball: object mugg: unknown; nearest is mug"},
-           {"kind = \"sphere\"", "object = \"mug\"", "line 33: body ball: mass is no key"},
+           {"kind = \"sphere\"", "object = \"mug\"", "line 33: body ball: mass is not a known key"},
            {"\"$far\"", "\"$fer\"", "line 34: body ball: p: option fer: unknown; nearest is far"},
-           {"\"$far\"", "\"1..0\"", "line 34: body ball: p: 1..0 is no range \"a..b\" with a <= b"},
-           {"\"$far\"", "\"1..2x\"", "line 34: body ball: p: 1..2x is no range"},
-           {"name = \"plane\"", "name = \"ball\"", "the name ball is taken"},
+           {"\"$far\"", "\"1..0\"", "line 34: body ball: p: 1..0 is not a range \"a..b\" with a <= b"},
+           {"\"$far\"", "\"1..2x\"", "line 34: body ball: p: 1..2x is not a range"},
+           {"name = \"plane\"", "name = \"ball\"", "the name ball is already used"},
            {"rpy = [0, 0, 1.5707963267948966]", "rpy = [0, 0, 1]\nq = [0, 0, 0, 1]",
-            "line 42: body plane: q and rpy are both there"},
+            "line 42: body plane: it has both q and rpy; give one of them"},
            {"term = \"joints\"", "term = \"jonts\"",
-            "line 48: observe jonts: term: jonts is not known; nearest is joints"},
+            "line 48: observe jonts: term: jonts is unknown; nearest is joints"},
            {"of = \"cart\"", "of = \"crt\"",
             "line 49: observe joints: of: there is no robot crt; nearest is cart"},
-           {"of = \"cart\"", "of = \"cart\"\nat = 1", "line 50: observe joints: at is no key"},
-           {"name = \"touch\"", "name = 3", "line 51: cost touch: name is no text"},
-           {"term = \"touch\"", "term = \"joints\"", "line 52: cost touch: term: joints is several numbers"},
+           {"of = \"cart\"", "of = \"cart\"\nat = 1", "line 50: observe joints: at is not a known key"},
+           {"name = \"touch\"", "name = 3", "line 51: cost touch: name is not a string"},
+           {"term = \"touch\"", "term = \"joints\"",
+            "line 52: cost touch: term: joints gives several numbers, but one is needed"},
            {"b = \"ball\"", "b = \"bll\"", "line 53: cost touch: b bll: unknown; nearest is ball"},
-           {"limit = 5", "limit = \"x\"", "line 55: cost touch: limit is no number"},
+           {"limit = 5", "limit = \"x\"", "line 55: cost touch: limit is not a number"},
            {"[[cost]]\n", "", "cannot redefine existing"},
            {"control = \"position\"\n", "", "nothing is moved by actions"},
            {"[[observe]]", "[[observe]", "t.task: line 47: "},
            // what the library refuses, at the row that it is of
            {"name = \"touch\"", "name = \"a b\"",
-            "t.task: line 50: cost a b: name: a b has other characters"},
+            "t.task: line 50: cost a b: name: a b may contain only letters"},
            {"limit = 5", "limit = inf", "line 50: cost touch: limit of touch is not finite"},
-           {"far = {", "\"f r\" = {", "line 7: options: f r: key: f r has other characters"},
+           {"far = {", "\"f r\" = {", "line 7: options: f r: key: f r may contain only letters"},
            {"low = 0, high = 2", "low = 0.5, high = 0.5",
             "line 7: options: far: low 0.5 of far is not below high 0.5"},
            {"name = \"text_test\"", "name = \"text test\"",
-            "line 1: task: name: text test has other characters"},
+            "line 1: task: name: text test may contain only letters"},
            {"kind = \"plane\"", "kind = \"hull\"\npoints = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]]",
-            "line 44: static table: table: the points are in one plane or too near each other"},
+            "line 44: static table: table: the points lie in one plane, or too close to each other"},
            {"kind = \"plane\"", "kind = \"box\"\nsize = [1, 1, 0]",
             "line 44: static table: table: half size 0"},
            {"mass = 0.2", "moment = [1, 1, 1, 0, 0, 0]\nmass = 0.2\nmaterial = \"none\"",
@@ -454,7 +456,7 @@ TEST(TaskText, RefusalsNameLineAndKey) {
   EXPECT_EQ(rdm_import_read_task(&task, nullptr, 4, nullptr), RDM_ERROR_ARGUMENT);
   const Task one(good);
   EXPECT_EQ(rdm_import_read_task(&task, good.data(), good.size(), nullptr), RDM_ERROR_ARGUMENT);
-  EXPECT_STREQ(rdm_import_error(), "line 1: task text_test: the name is taken");
+  EXPECT_STREQ(rdm_import_error(), "line 1: task text_test: the name is already used");
 }
 
 // As a bin of many objects is written: those that are placed are not counted, and the text says what is.
@@ -478,7 +480,7 @@ TEST(TaskText, BodiesWithARangeAreBounded) {
   };
   EXPECT_EQ(refusal(bodies(100, "0")), "");
   EXPECT_NE(refusal(bodies(65, "\"0..1\""))
-                .find("body b63: more than 64 bodies that begin with a range in p, rpy, v or w"),
+                .find("body b63: there are more than 64 bodies with a range in p, rpy, v or w"),
             std::string::npos);
 }
 
@@ -489,11 +491,11 @@ TEST(TaskText, TermRefusals) {
             "a: there is no body, robot, link or shape bal; nearest is ball"},
            {"term = \"constant\"\ncurve = \"near\"\n", "no width"},
            {"term = \"constant\"\ncurve = \"near\"\nwidth = 0\n", "width: 0 is not above 0"},
-           {"term = \"constant\"\nwidth = 1\n", "width: curve near or bell has one"},
+           {"term = \"constant\"\nwidth = 1\n", "width: only the curves near and bell have one"},
            {"term = \"constant\"\ncurve = \"above\"\n", "no at"},
-           {"term = \"overlap\"\na = \"ball\"\n", "overlap is not observed"},
+           {"term = \"overlap\"\na = \"ball\"\n", "overlap cannot be observed"},
            {"term = \"joint\"\njoint = \"cart_slid\"\n", "nearest is cart_slide"},
-           {"term = \"joint\"\njoint = \"cart_slide\"\nfrom = 1\n", "from and to are the same"},
+           {"term = \"joint\"\njoint = \"cart_slide\"\nfrom = 1\n", "from and to are equal"},
            {"term = \"leaves_box\"\na = \"ball\"\nlow = [0, 0, 0]\nhigh = [1, 0, 1]\n",
             "low 0 is not below high 0"},
            {"term = \"joint_window\"\nof = \"cart\"\nlow = 1\nhigh = 0\n", "low 1 is not below high 0"},

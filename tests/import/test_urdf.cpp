@@ -72,14 +72,13 @@ std::string tetrahedron(double side, bool closed = true) {
 
 // ---- what is not known ----
 TEST(Urdf, SlipsOfThePenAreRefusedWithTheNearestWord) {
-  expect_refused(
-      with_joint("<origin xyz='0 0 1' rrpy='0 1 0'/>" + kLimit), RDM_ERROR_UNSUPPORTED,
-      "origin: rrpy is no attribute that is known here, and it could change the robot; nearest is rpy");
+  expect_refused(with_joint("<origin xyz='0 0 1' rrpy='0 1 0'/>" + kLimit), RDM_ERROR_UNSUPPORTED,
+                 "origin: rrpy is not a known attribute here, and it could change the robot; nearest is rpy");
   expect_refused(with_joint("<axis xzy='0 0 1'/>" + kLimit), RDM_ERROR_UNSUPPORTED, "nearest is xyz");
   expect_refused(with_joint("<axis rpy='0 1 0' xyz='0 0 1'/>" + kLimit), RDM_ERROR_UNSUPPORTED, "axis: rpy");
   expect_refused(
       with_joint("<orgin xyz='0 0 1'/>" + kLimit), RDM_ERROR_UNSUPPORTED,
-      "orgin: no element that is known in joint, and it could change the robot; nearest is origin");
+      "orgin: this is not a known element in joint, and it could change the robot; nearest is origin");
   expect_refused(with_joint(kLimit + "<mimik joint='k'/>"), RDM_ERROR_UNSUPPORTED, "nearest is mimic");
   expect_refused(with_joint("<limit lower='-1' uper='1'/>"), RDM_ERROR_UNSUPPORTED, "nearest is upper");
   expect_refused(with_arm("<inertail/>"), RDM_ERROR_UNSUPPORTED, "nearest is inertial");
@@ -89,10 +88,10 @@ TEST(Urdf, SlipsOfThePenAreRefusedWithTheNearestWord) {
 }
 
 TEST(Urdf, ElementsInTheWrongPlaceAreRefused) {
-  expect_refused(with_more(kInertial), RDM_ERROR_FORMAT, "inertial: it stands in link, not in robot");
+  expect_refused(with_more(kInertial), RDM_ERROR_FORMAT, "inertial: it must be in link, not in robot");
   expect_refused(
       with_arm("<collision><geometry><origin xyz='0 0 1'/><box size='1 1 1'/></geometry></collision>"),
-      RDM_ERROR_FORMAT, "origin: it stands in collision, not in geometry");
+      RDM_ERROR_FORMAT, "origin: it must be in collision, not in geometry");
   expect_refused(with_arm(kInertial + "<origin xyz='0 0 1'/>"), RDM_ERROR_FORMAT, "not in link");
   EXPECT_TRUE(from_text(with_arm(kInertial + "<origin xyz='0 0 0' rpy='0 0 0'/>"))
                   .has_note(RDM_NOTE_DROPPED, "origin"));
@@ -100,7 +99,7 @@ TEST(Urdf, ElementsInTheWrongPlaceAreRefused) {
 
 TEST(Urdf, SecondOnesAreRefusedUnlessTheySayTheSame) {
   expect_refused(with_joint(kOrigin + "<origin xyz='0 0 0.2'/>" + kLimit), RDM_ERROR_FORMAT,
-                 "origin: a second one, after that of line 1");
+                 "origin: there is already one in line 1");
   expect_refused(with_joint("<child link='base'/>" + kLimit), RDM_ERROR_FORMAT, "child: a second one");
   expect_refused(with_joint("<dynamics damping='1'/><dynamics damping='2'/>" + kLimit), RDM_ERROR_FORMAT,
                  "dynamics: a second one");
@@ -113,7 +112,7 @@ TEST(Urdf, OfTwoInertialsTheFirstCounts) {
   const Import i = from_text(with_arm(kInertial + other)), twins = from_text(with_arm(kInertial + kInertial));
   EXPECT_EQ(i.def.links[0].mass, 0.5);
   EXPECT_TRUE(i.has_note(RDM_NOTE_CHANGED,
-                         "link arm: a second inertial, passed over as in ROS: that of line 1 counts"));
+                         "link arm: its second inertial was ignored, as in ROS; the one of line 1 counts"));
   EXPECT_EQ(from_text(with_arm(other + kInertial)).def.links[0].mass, 0.6);
   EXPECT_EQ(twins.def.links[0].mass, 0.5);
   EXPECT_TRUE(twins.has_note(RDM_NOTE_CHANGED, "a second inertial"));
@@ -128,7 +127,8 @@ TEST(Urdf, ADampingThatHoldsAJointStillIsTheLargest) {
   };
   const Import i = from_text(with_damping("1e11"));
   EXPECT_EQ(i.def.links[0].kd, 1e6);
-  EXPECT_TRUE(i.has_note(RDM_NOTE_CHANGED, "damping 1e+11 is 1e+06, the most that a joint has"));
+  EXPECT_TRUE(
+      i.has_note(RDM_NOTE_CHANGED, "damping 1e+11 was reduced to 1e+06, the largest that is allowed"));
   EXPECT_TRUE(from_text(with_damping("1e6")).notes(RDM_NOTE_CHANGED).empty());
   expect_refused(with_damping("-1"), RDM_ERROR_RANGE, "damping -1 or friction 0 is below 0");
   expect_refused(with_damping("1e31"), RDM_ERROR_RANGE, "damping: 1e31 is outside [-1e30, 1e30]");
@@ -139,7 +139,7 @@ TEST(Urdf, WhatClosesLoopsOrBendsIsRefused) {
                  "loop_joint l: it closes a loop");
   expect_refused(with_more("<drake:joint name='l' type='ball'/>"), RDM_ERROR_UNSUPPORTED, "drake:joint l");
   expect_refused(with_joint(kLimit + "<drake:mimic joint='k'/>"), RDM_ERROR_UNSUPPORTED, "write it as mimic");
-  expect_refused(with_arm(kInertial + "<fem/>"), RDM_ERROR_UNSUPPORTED, "bodies that bend");
+  expect_refused(with_arm(kInertial + "<fem/>"), RDM_ERROR_UNSUPPORTED, "deformable bodies");
 }
 
 TEST(Urdf, WordsOfOtherProgramsAreDroppedAndListed) {
@@ -158,7 +158,7 @@ TEST(Urdf, NoNumberAndTooLargeANumberAreTwoReasons) {
   expect_refused(with_joint("<origin xyz='0 0 1e16'/>" + kLimit), RDM_ERROR_RANGE,
                  "xyz: 0 0 1e16 is outside [-1e9, 1e9]");
   expect_refused(with_joint("<origin xyz='0 0 inf'/>" + kLimit), RDM_ERROR_RANGE, "xyz: 0 0 inf is outside");
-  expect_refused(with_joint("<origin xyz='0 0 1,5.5.5'/>" + kLimit), RDM_ERROR_FORMAT, "is no number");
+  expect_refused(with_joint("<origin xyz='0 0 1,5.5.5'/>" + kLimit), RDM_ERROR_FORMAT, "is not a number");
   expect_refused(with_joint("<origin xyz='0 0 1e999'/>" + kLimit), RDM_ERROR_RANGE, "is outside");
   EXPECT_EQ(from_text(with_joint("<origin xyz='0 0 1e-999'/>" + kLimit)).def.links[0].pose.p[2], 0);
 }
@@ -175,7 +175,7 @@ TEST(Urdf, ABoundThatIsNoneIsNone) {
     EXPECT_TRUE(i.has_note(RDM_NOTE_GUESSED, "joint j: effort"));
   }
   expect_refused(with_joint("<limit lower='nan' upper='0.5' effort='1' velocity='1'/>"), RDM_ERROR_FORMAT,
-                 "lower: nan is no number");
+                 "lower: nan is not a number");
   File slide;
   slide.type = "prismatic", slide.joint = "<limit lower='-inf' upper='inf' effort='1' velocity='1'/>";
   rdm_import_config o = import_config();
@@ -199,27 +199,28 @@ TEST(Urdf, FilesThatAreNoXmlSaySo) {
   const Folder folder;
   rdm_import* i = nullptr;
   EXPECT_EQ(rdm_import_read_file(&i, folder.add("a.urdf", "hand = 1\n").c_str(), nullptr), RDM_ERROR_FORMAT);
-  EXPECT_NE(std::string(rdm_import_error()).find("line 1: no XML"), std::string::npos) << rdm_import_error();
+  EXPECT_NE(std::string(rdm_import_error()).find("line 1: this is not XML"), std::string::npos)
+      << rdm_import_error();
 }
 
 TEST(Urdf, NegativeNumbersAreSaidOrRefused) {
   const Import i = from_text(with_joint("<limit lower='-1' upper='1' effort='-1' velocity='-1'/>"));
   EXPECT_EQ(i.def.links[0].velocity, 0);
-  EXPECT_TRUE(i.has_note(RDM_NOTE_CHANGED, "joint j: velocity -1 is no bound"));
+  EXPECT_TRUE(i.has_note(RDM_NOTE_CHANGED, "joint j: velocity -1 is not a bound, and was ignored"));
   EXPECT_TRUE(i.has_note(RDM_NOTE_GUESSED, "joint j: effort"));
   EXPECT_TRUE(from_text(with_joint("<limit lower='-1' upper='1' effort='0' velocity='1'/>"))
-                  .has_note(RDM_NOTE_CHANGED, "joint j: effort 0 is none"));
+                  .has_note(RDM_NOTE_CHANGED, "joint j: effort 0 means none"));
   expect_refused(with_joint(kLimit + "<dynamics damping='-1'/>"), RDM_ERROR_RANGE,
                  "damping -1 or friction 0 is below 0");
   expect_refused(with_joint("<origin xyz='0 0 1' xyz='0 0 2'/>" + kLimit), RDM_ERROR_FORMAT,
-                 "an attribute that is not name=\"value\", or stands twice");
+                 "an attribute that is not name=\"value\", or occurs twice");
 }
 
 TEST(Urdf, TurnsByQuaternionAndMirroredMomentsAreRead) {
   const Import i = from_text(with_joint("<origin xyz='0 0 1' quat_xyzw='0 0 2 0'/>" + kLimit));
   EXPECT_NEAR(std::abs(i.def.links[0].pose.q[2]), 1, 1e-12);
   expect_refused(with_joint("<origin rpy='0 0 0' quat_xyzw='0 0 1 0'/>" + kLimit), RDM_ERROR_FORMAT,
-                 "rpy and quat_xyzw");
+                 "it has both rpy and quat_xyzw");
   const auto moments = [](const char* iyx) {
     return with_arm(
         "<inertial><mass value='1'/><inertia ixx='1e-3' iyy='1e-3' izz='1e-3' ixy='1e-4' ixz='0' "
@@ -232,8 +233,7 @@ TEST(Urdf, TurnsByQuaternionAndMirroredMomentsAreRead) {
 
 // ---- masses ----
 TEST(Urdf, ADensityWeighsLinksWithoutInertial) {
-  expect_refused(with_arm(kBox), RDM_ERROR_RANGE,
-                 "link arm: it moves and has no mass: config.density gives one");
+  expect_refused(with_arm(kBox), RDM_ERROR_RANGE, "link arm: it moves, but has no mass; set config.density");
   rdm_import_config o = import_config();
   o.density = 500;
   const Import i = from_text(with_arm("<collision><origin xyz='0 0 0.3'/><geometry><box size='0.2 0.2 0.1'/>"
@@ -243,8 +243,8 @@ TEST(Urdf, ADensityWeighsLinksWithoutInertial) {
   EXPECT_DOUBLE_EQ(i.def.links[0].com[2], 0.3);
   EXPECT_NEAR(i.def.links[0].moment[0], 2 * (0.04 + 0.01) / 12, 1e-12);
   EXPECT_DOUBLE_EQ(i.def.root_mass, 0.5);  // it says its mass
-  EXPECT_TRUE(i.has_note(RDM_NOTE_GUESSED, "link arm: mass 2, of its shapes at 500 kg/m3"));
-  expect_refused(with_arm(""), RDM_ERROR_RANGE, "link arm: it moves and has no mass",
+  EXPECT_TRUE(i.has_note(RDM_NOTE_GUESSED, "link arm: mass 2 kg, from its shapes at 500 kg/m3"));
+  expect_refused(with_arm(""), RDM_ERROR_RANGE, "link arm: it moves, but has no mass",
                  &o);  // nothing to weigh
   // Isaac Gym's: a density of the link itself.
   EXPECT_DOUBLE_EQ(
@@ -337,8 +337,8 @@ TEST(Urdf, FixedLinksMayHaveMomentsAlone) {
   const Import i = from_text(f.text());
   EXPECT_DOUBLE_EQ(i.def.links[0].mass, 0.5);
   EXPECT_NEAR(i.def.links[0].moment[0], 0.101, 1e-12);
-  EXPECT_TRUE(
-      i.has_note(RDM_NOTE_CHANGED, "link flange has no mass; its moments are part of what carries it"));
+  EXPECT_TRUE(i.has_note(RDM_NOTE_CHANGED,
+                         "link flange has no mass; its moments of inertia were added to its parent's"));
   expect_refused(with_arm(moments), RDM_ERROR_RANGE, "link arm: the mass 0 is not above 0");
 }
 
@@ -348,14 +348,16 @@ TEST(Urdf, TheRootMayBeAPoint) {
   const Import i = from_text(f.text());
   EXPECT_EQ(i.def.root_mass, 3);
   EXPECT_NEAR(i.def.root_moment[0], 3 * 0.4 * 1e-4, 1e-12);
-  EXPECT_TRUE(i.has_note(RDM_NOTE_GUESSED, "the root: moments of inertia of a ball of 0.01 m"));
+  EXPECT_TRUE(i.has_note(RDM_NOTE_GUESSED,
+                         "the root: it got the moments of inertia of a ball with a radius of 0.01 m"));
   f.base = "<inertial><mass value='0'/><inertia ixx='1' iyy='1' izz='1'/></inertial>";
-  EXPECT_TRUE(from_text(f.text()).has_note(RDM_NOTE_DROPPED, "the root's moments of inertia, without mass"));
+  EXPECT_TRUE(from_text(f.text()).has_note(RDM_NOTE_DROPPED,
+                                           "the root's moments of inertia were dropped, as it has no mass"));
 }
 
 // ---- text ----
 TEST(Urdf, XacroIsNamedWhereverItStands) {
-  const char* words = "xacro is not read: expand the file with the xacro tool first";
+  const char* words = "xacro is not read; expand the file with the xacro tool first";
   expect_refused(with_arm(kInertial + "<xacro:insert_block name='x'/>"), RDM_ERROR_UNSUPPORTED, words);
   expect_refused(with_joint("<origin xyz='0 0 ${height}'/>" + kLimit), RDM_ERROR_UNSUPPORTED, words);
   expect_refused(with_joint("<origin xyz='$(optenv XYZ 0 0 0)'/>" + kLimit), RDM_ERROR_UNSUPPORTED, words);
@@ -379,9 +381,9 @@ TEST(Urdf, DoctypesAndXmlErrorsSayWhatIsWrong) {
   f.before = "<!-- licence -->\n<?xml version='1.0'?>";
   EXPECT_EQ(from_text(f.text()).def.num_links, 1);
   expect_refused(with_more("<?xml version='1.0'?>"), RDM_ERROR_FORMAT,
-                 "no XML: the declaration <?xml ...?> must stand first in the file");
+                 "this is not XML: the declaration <?xml ...?> must come first in the file");
   expect_refused("<robot name='x'><link name='a'></robot>", RDM_ERROR_FORMAT,
-                 "no XML: an element that another one's end closes");
+                 "this is not XML: an element that is closed by the end of another one");
   expect_refused("<!-- a -->\n -->\n<mujoco><worldbody/></mujoco>", RDM_ERROR_FORMAT,
                  "line 3: mujoco: no body");  // no .robot file
   expect_refused("<robot name=x>", RDM_ERROR_FORMAT, "no XML: an attribute that is not name=\"value\"");
@@ -427,10 +429,11 @@ TEST(Urdf, MeshesOfOtherSystemsAreReadAndBrokenOnesSayWhy) {
     return std::string(80, 'x') + std::string{static_cast<char>(said), 0, 0, 0} +
            std::string(50 * there, '\0');
   };
-  refused("a.stl", facets(2, 1), "its header says 2 facets, 184 bytes; it has 134");
-  refused("a.stl", facets(1, 1) + "behind", "its header says 1 facets, 134 bytes; it has 140");
+  refused("a.stl", facets(2, 1), "its header says 2 facets, which are 184 bytes, but it has 134 bytes");
+  refused("a.stl", facets(1, 1) + "behind",
+          "its header says 1 facets, which are 134 bytes, but it has 140 bytes");
   refused("a.stl", facets(0, 0), "its header says 0 facets");
-  refused("a.stl", "solid a\nendsolid a\n", "no corners in it");
+  refused("a.stl", "solid a\nendsolid a\n", "it has no corners");
   const std::string text =
       "SOLID a\rFACET NORMAL 0 0 1\rOUTER LOOP\rVERTEX 0 0 0\rVERTEX 0.2 0 0\rVERTEX 0 0.2 0\rENDLOOP\r"
       "ENDFACET\rENDSOLID a\r";
@@ -459,7 +462,7 @@ TEST(Urdf, NamesOfAnyScriptKeepReadableIds) {
       text.replace(at, 5, "'" + std::string(name) + "'");
     const Import i = from_text(text);
     EXPECT_STREQ(i.def.links[0].name, id);
-    EXPECT_TRUE(i.has_note(RDM_NOTE_CHANGED, std::string("link ") + name + " is called " + id));
+    EXPECT_TRUE(i.has_note(RDM_NOTE_CHANGED, std::string("link ") + name + " was renamed to " + id));
   }
 }
 

@@ -338,9 +338,9 @@ TEST(PointNet, ShapesOutsideTheBoundsAreErrors) {
   EXPECT_EQ(thrown([](auto& s) { s.points = 0; }), "points: 0 is outside [1, 16384]");
   EXPECT_EQ(thrown([](auto& s) { s.points = kMaxPoints + 1; }), "points: 16385 is outside [1, 16384]");
   EXPECT_EQ(thrown([](auto& s) { s.classes = 65; }), "point classes: 65 is outside [0, 64]");
-  EXPECT_EQ(thrown([](auto& s) { s.classes = 1; }), "encoder: 5 inputs, not 3 and 1 classes");
+  EXPECT_EQ(thrown([](auto& s) { s.classes = 1; }), "encoder: it has 5 inputs, not 3 and 1 classes");
   EXPECT_EQ(thrown([](auto& s) { s.color = true; }),
-            "encoder: 5 inputs, not 3 and 2 classes and 3 of a colour");
+            "encoder: it has 5 inputs, not 3 and 2 classes and 3 of a colour");
   EXPECT_EQ(thrown([](auto& s) { s.range = 0; }), "point range: 0 m is outside [0.001, 1000]");
   EXPECT_EQ(thrown([](auto& s) { s.origin[1] = NAN; }), "point origin: nan m is outside [-1e6, 1e6]");
   EXPECT_NE(thrown([](auto& s) { s.mlp.hidden[0] = 0; }), "");

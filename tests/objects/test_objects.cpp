@@ -375,7 +375,7 @@ TEST(Objects, RefuseWhatNoBodyCouldBeMadeOf) {
     EXPECT_NE(std::string(last_error()).find(text), std::string::npos) << last_error();
   };
   refused(Code::kArgument, "the name is empty", [](Object& o, ObjectShape&) { o.name = nullptr; });
-  refused(Code::kArgument, "is made of other than", [](Object& o, ObjectShape&) { o.name = "a|b"; });
+  refused(Code::kArgument, "may contain only letters", [](Object& o, ObjectShape&) { o.name = "a|b"; });
   refused(Code::kRange, "longer than 25",
           [](Object& o, ObjectShape&) { o.alias = "a_name_that_has_no_room_left"; });
   refused(Code::kRange, "mass 0 is outside", [](Object& o, ObjectShape&) { o.mass = 0; });
@@ -389,7 +389,8 @@ TEST(Objects, RefuseWhatNoBodyCouldBeMadeOf) {
   refused(Code::kRange, "num_points 0", [](Object&, ObjectShape& s) { s.kind = ShapeKind::kHull; });
   refused(Code::kArgument, "place is not finite", [](Object&, ObjectShape& s) { s.p.z = INFINITY; });
   refused(Code::kArgument, "quaternion has length", [](Object&, ObjectShape& s) { s.q.w = 2; });
-  refused(Code::kArgument, "can be touched", [](Object&, ObjectShape& s) { s.collides = false; });
+  refused(Code::kArgument, "none of its shapes collides",
+          [](Object&, ObjectShape& s) { s.collides = false; });
   refused(Code::kArgument, "not positive definite", [](Object& o, ObjectShape&) { o.moment[0] = 1; });
   refused(Code::kArgument, "triangle rule",
           [](Object& o, ObjectShape&) { o.moment[0] = o.moment[1] = 1, o.moment[2] = 3; });

@@ -291,7 +291,7 @@ class Doors(unittest.TestCase):
         policy = redman.Policy.trained(TASK)
         for repeat in (3, 8):
             with redman.Pool(TASK, options={"action_repeat": repeat}) as pool:
-                with self.assertRaisesRegex(redman.ArgumentError, f"every 4 control steps, which a step of {repeat}"):
+                with self.assertRaisesRegex(redman.ArgumentError, f"every 4 control steps, which is not a multiple of a step of {repeat}"):
                     policy.actor(pool)
                 with self.assertRaisesRegex(redman.ArgumentError, "every 4"):
                     redman.evaluate(policy, options={"action_repeat": repeat})

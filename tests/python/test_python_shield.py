@@ -230,7 +230,7 @@ class States(unittest.TestCase):
         self.assertTrue(same(before[:5], plan))
         self.assertEqual(len(shield.plan(0)), 0)
         plan[:, 2] = 1  # FF4 to the end of its range
-        with self.assertRaisesRegex(redman.StateError, "world 1: by the plan cost column 0"):
+        with self.assertRaisesRegex(redman.StateError, "world 1: under the plan cost column 0"):
             shield.set_plan(np.repeat(plan, 4, 0), env=1)
         self.assertTrue(same(shield.plan(1), before))
         with self.assertRaisesRegex(redman.ArgumentError, r"plan: shape \(3,\)"):
@@ -326,7 +326,7 @@ class Agents(unittest.TestCase):
         with self.assertRaisesRegex(redman.UsageError, "shield: a redman.Shield or None"):
             agent.shield = True
         agent.shield = redman.Shield(pool)
-        with self.assertRaisesRegex(redman.ArgumentError, "decisions last 1 control steps, the agent's 4"):
+        with self.assertRaisesRegex(redman.ArgumentError, "decisions last 1 control steps, but the agent's last 4"):
             agent.rollout(pool)
         agent.close()
         with self.assertRaisesRegex(redman.StateError, "closed"):

@@ -284,8 +284,9 @@ TEST(Mesh, ReadsVerticesOrSaysWhereNone) {
   EXPECT_EQ(mesh(binary, MeshKind::kStl).size(), 3u);
   std::string many = binary;
   std::memset(many.data() + 80, '\xff', 4);
-  EXPECT_NE(failure([&] { mesh(many, MeshKind::kStl); }).find("cut off: its header says 4294967295 facets, "),
-            std::string::npos);
+  EXPECT_NE(
+      failure([&] { mesh(many, MeshKind::kStl); }).find("truncated: its header says 4294967295 facets, "),
+      std::string::npos);
   many = binary;
   many[80] = 0;
   EXPECT_EQ(failure([&] { mesh(many, MeshKind::kStl); }), "its header says 0 facets");
@@ -310,7 +311,7 @@ TEST(Mesh, LinesEndAndBeginAsProgramsWriteThem) {
   EXPECT_EQ(mesh("solid a\r vertex 1 2 3\r vertex 4 5 6\r", MeshKind::kStl), want);
   EXPECT_NE(failure([&] { mesh("# a\nv 1 \\\n 2 3\nv 1 2\n", MeshKind::kObj); }).find("line 4"),
             std::string::npos);
-  EXPECT_EQ(failure([&] { mesh("V 1 2 3\n", MeshKind::kObj); }), "no vertices in it");
+  EXPECT_EQ(failure([&] { mesh("V 1 2 3\n", MeshKind::kObj); }), "it has no vertices");
 }
 
 Mesh faces(const std::string& bytes, MeshKind kind) {
@@ -332,9 +333,10 @@ TEST(Mesh, FacesNameVerticesThatAreThere) {
             std::string::npos);
   EXPECT_NE(failure([] { faces("v 0 0 0\nv 1 0 0\nf 1 2\n", MeshKind::kObj); }).find("line 3"),
             std::string::npos);
-  EXPECT_NE(
-      failure([] { faces("vertex 0 0 0\nvertex 1 0 0\n", MeshKind::kStl); }).find("three for each facet"),
-      std::string::npos);
+  EXPECT_NE(failure([] {
+              faces("vertex 0 0 0\nvertex 1 0 0\n", MeshKind::kStl);
+            }).find("three vertices for each facet"),
+            std::string::npos);
   EXPECT_TRUE(
       faces("vertex 0 0 0\nvertex 1 0 0\nvertex 0 0 0\n", MeshKind::kStl).faces.empty());  // no surface
 }

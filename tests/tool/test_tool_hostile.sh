@@ -47,7 +47,7 @@ done
 refused 'plugin' 'not a regular file' tasks --plugin pipe.so
 truncate -s 100G huge
 for end in urdf xml stl object task rdm npz demo; do ln -s huge "huge.$end"; done
-everywhere huge '[0-9] bytes' 'wrong magic' 'not a whole archive'
+everywhere huge '[0-9] bytes' 'wrong magic' 'not a complete archive'
 mkdir run
 for name in config.json policy.rdm progress.csv; do ln -s ../huge "run/$name"; done
 refused 'eval of a huge run' . eval --policy run
@@ -56,8 +56,8 @@ refused 'plot of a huge run' 'longer than' plot run
 # Archives that say more than they are.
 printf 'PK\003\004' > sparse.npz
 truncate -s 3G sparse.npz
-refused 'sparse.npz of train' 'not a whole archive' train --task bandit --from sparse.npz --out fresh
-refused 'sparse.npz of rollout' 'not a whole archive' rollout --policy sparse.npz
+refused 'sparse.npz of train' 'not a complete archive' train --task bandit --from sparse.npz --out fresh
+refused 'sparse.npz of rollout' 'not a complete archive' rollout --policy sparse.npz
 if [ -n "$python" ]; then
   "$python" - << 'PYTHON' || exit 1
 import json, struct, zipfile
@@ -81,8 +81,8 @@ rollout("lies.npz", f"({1 << 40}, 1)", 1)  # an array that is not as long as it 
 rollout("wide.npz", "(20, 1099511627776)", 1)
 PYTHON
   refused 'zeros.npz' 'out of a file of' rollout --policy zeros.npz
-  refused 'lies.npz' 'not as long as it says' rollout --policy lies.npz
-  refused 'wide.npz' 'not as long as it says' rollout --policy wide.npz
+  refused 'lies.npz' 'does not have the length that its header says' rollout --policy lies.npz
+  refused 'wide.npz' 'does not have the length that its header says' rollout --policy wide.npz
   refused 'zeros.npz of train' . train --task bandit --from zeros.npz --out fresh
 fi
 

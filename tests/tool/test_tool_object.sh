@@ -95,20 +95,20 @@ bad() { # bad TEXT arguments...: one line that has the text
 echo 'f 1 2 9' > few.obj; head -4 ell.obj >> few.obj
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nf 1 2 3\n' > flat.obj
 printf 'name = "x"\nmas = 1\n' > bad.object
-bad "no file, and no object of that name" object bananna
-bad "needs one, above 0 kg" object ell.obj
+bad "there is no such file, and no object of that name" object bananna
+bad "needs a mass above 0 kg" object ell.obj
 bad "a face names a vertex that is not there" object few.obj --mass 1
 bad "in one plane" object flat.obj --mass 1
-bad "line 2: mas is no key; nearest is mass" object bad.object
-bad "are of a mesh" object mug.object --mass 1
-bad "line 2: mas is no key" eval --task grasp --object bad.object
-bad "the name is taken: give it another by redman object mug.object --name NAME --out NAME.object" eval --task grasp --object mug.object --object mug.object
+bad "line 2: mas is not a known key; nearest is mass" object bad.object
+bad "are for a mesh" object mug.object --mass 1
+bad "line 2: mas is not a known key" eval --task grasp --object bad.object
+bad "the name is already used: give it another by redman object mug.object --name NAME --out NAME.object" eval --task grasp --object mug.object --object mug.object
 # What the text says to do works.
 "$tool" object mug.object --name mug2 --out mug2.object > out 2>&1 || say "object --name: $(cat out)"
 "$tool" objects --object mug.object --object mug2.object | grep -q '^mug2 ' || say "mug under another name"
 "$tool" object 011_banana --name banana2 --out banana2.object > out 2>&1 || say "object --name: $(cat out)"
 "$tool" objects --object banana2.object | grep -q '^banana2 ' || say "one of the list under another name, without its alias"
-bad "the name a b is made of other than letters" object mug.object --name 'a b' --out ab.object
+bad "the name a b may contain only letters" object mug.object --name 'a b' --out ab.object
 [ ! -e ab.object ] || say "an object is written that cannot be read"
 bad "banana" eval --task grasp --set object=bananna
 exit $failed

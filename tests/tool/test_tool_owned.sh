@@ -116,7 +116,7 @@ for command in 'plot run' 'report run --episodes 0 --strip 0' 'render --task bal
   echo "mine" > "$name"
   # shellcheck disable=SC2086
   "$tool" $command > out 2> err && say "$command replaced $name of another program"
-  grep -q "$name stands here already and was not written by redman" err || say "$command: $(cat err)"
+  grep -q "$name exists already and was not written by redman" err || say "$command: $(cat err)"
   [ "$(cat "$name")" = mine ] || say "$command touched $name"
   rm "$name"
   for time in first second; do
@@ -136,9 +136,9 @@ wait
 # A dangling link in the way of a run folder is named.
 ln -s nowhere dangling
 train --out dangling && say "a dangling link was taken for a folder"
-grep -q 'dangling is a link to nowhere, which is not there' err || say "a dangling link: $(cat err)"
+grep -q 'dangling is a link to nowhere, which does not exist' err || say "a dangling link: $(cat err)"
 train --out dangling/deep/run && say "a dangling link was taken for a folder"
-grep -q 'dangling is a link to nowhere, which is not there' err || say "below a dangling link: $(cat err)"
+grep -q 'dangling is a link to nowhere, which does not exist' err || say "below a dangling link: $(cat err)"
 "$tool" train --resume run --algo cpo > out 2> err && say "a resume with another algorithm was taken"
 grep -q -- '--from FOLDER' err || say "resume with other settings does not name --from: $(cat err)"
 exit $failed

@@ -73,7 +73,7 @@ refused 2 'nearest is samples' plan --task lqr_line --plan sampels=3
 refused 2 'method' plan --task lqr_line --method guess
 refused 2 'not key=value' plan --task lqr_line --plan samples
 refused 2 'nearest is horizon' eval --task lqr_line --policy plan:horizn=3
-refused 1 'learned task lqr_line' plan --task bandit --critic runs/line
+refused 1 'was trained in task lqr_line' plan --task bandit --critic runs/line
 refused 1 'config.json' plan --task lqr_line --critic nowhere
 refused 1 'policy file or a run folder' plan --task lqr_line --policy zero
 exit $failed

@@ -35,7 +35,7 @@ cmp one two || { echo "the hash depends on threads"; failed=1; }
 run train --task press --steps 1024 --envs 4 --set horizon=64 --set hidden=8 --out run --plugin press.so
 run eval --policy run --episodes 2 --plugin press.so
 "$tool" eval --policy run --episodes 2 > out 2> err && { echo "a run's plugin was loaded unasked"; failed=1; }
-grep -q 'task press is that of a plugin: give --plugin ./press.so' err || { echo "no hint: $(cat err)"; failed=1; }
+grep -q 'task press comes from a plugin: give --plugin ./press.so' err || { echo "no hint: $(cat err)"; failed=1; }
 run render --task press --policy hold --size 64x48 --out press.png --plugin press.so
 run rollout --task press --policy hold --record press.npz --plugin press.so
 
@@ -49,7 +49,7 @@ expect() { # expect TEXT ARGUMENTS...: exit status 2, and one line with the text
     failed=1
   fi
 }
-expect 'the name is taken' tasks --plugin press.so --plugin ./press.so
+expect 'the name is already used' tasks --plugin press.so --plugin ./press.so
 expect 'missing.so' tasks --plugin missing.so
 expect 'no function redman_plugin' --plugin none.so tasks
 expect 'the moon is full' --plugin refuses.so tasks

@@ -83,8 +83,8 @@ refused() {
   "$tool" train --task two_state "$@" --out refused > /dev/null 2> err && { echo "not refused: $*"; failed=1; }
   grep -q -- "$text" err || { echo "no '$text' for $*: $(cat err)"; failed=1; }
 }
-refused 'not a number of 1 to 256' --ranks none
-refused 'not a number of 1 to 256' --ranks 0
-refused '3 do not divide 16 worlds' --ranks 3 --envs 16
-refused 'are not 4 ranks times a power of two' --ranks 4 --envs 6000 --set blocks=6
+refused 'neither a number from 1 to 256 nor mpi' --ranks none
+refused 'neither a number from 1 to 256 nor mpi' --ranks 0
+refused '3 does not divide the number of worlds, 16' --ranks 3 --envs 16
+refused 'is not the number of ranks, 4, times a power of two' --ranks 4 --envs 6000 --set blocks=6
 exit $failed

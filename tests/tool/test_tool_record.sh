@@ -81,11 +81,11 @@ refused "no file" 'cannot read none.npz' --policy none.npz
 refused "another task" 'was recorded in task hand_over_safe_finger, not in grasp' --policy hold.npz --task grasp
 refused "other options" 'hold.npz does not fit' --policy hold.npz --set object=ball
 refused "too many episodes" 'has 4' --policy hold.npz --episodes 5
-refused "a seed" 'goes without a seed' --policy hold.npz --seed 5
+refused "a seed" 'takes no seed' --policy hold.npz --seed 5
 refused "states as text" 'cannot hold states' --policy zero --record states.csv --record-states
 refused "no folder" 'cannot write none/x.npz' --policy zero --record none/x.npz
 "$tool" export --policy hold.npz --c x.c > out 2> err
-[ $? -eq 2 ] && grep -q 'no network' err || say "a recording was exported: $(cat err)"
+[ $? -eq 2 ] && grep -q 'it is not a network' err || say "a recording was exported: $(cat err)"
 "$tool" eval --policy hold.npz --episodes 9 > out 2> err
 [ $? -eq 1 ] && grep -q 'hold.npz has 4 episodes' err || say "eval of too many episodes: $(cat err)"
 echo old > full.npz
@@ -108,15 +108,15 @@ spoil() {  # spoil WORDS PYTHON
 }
 spoil 'no array action' 'del a["action"]'
 spoil 'no array metadata' 'del a["metadata"]'
-spoil 'another type or shape' 'a["action"] = a["action"].astype("f8")'
-spoil 'another type or shape' 'a["action"] = a["action"][0]'
-spoil 'order of Fortran' 'a["action"] = np.asfortranarray(a["action"])'
+spoil 'does not have the type or shape' 'a["action"] = a["action"].astype("f8")'
+spoil 'does not have the type or shape' 'a["action"] = a["action"][0]'
+spoil 'Fortran order' 'a["action"] = np.asfortranarray(a["action"])'
 spoil 'first steps of its episodes' 'a["episode_begin"] = a["episode_begin"] + 1'
 spoil 'has no step' 'a["episode_begin"][1] = 0'
-spoil 'not one for each episode' 'a["state"] = a["state"][1:]'
+spoil 'does not have one state for each episode' 'a["state"] = a["state"][1:]'
 spoil 'does not fit' 'a["state"] = a["state"] ^ 255'
-spoil 'has 39 actions, the task 40' 'a["action"] = a["action"][:, 1:].copy()'
-spoil 'another format' 'a["metadata"] = np.array("{\"format\": \"x\"}")'
+spoil 'has 39 actions, but the task has 40' 'a["action"] = a["action"][:, 1:].copy()'
+spoil 'its format is not redman rollout 1' 'a["metadata"] = np.array("{\"format\": \"x\"}")'
 spoil 'not a recorded rollout' 'a["metadata"] = np.array("{\"format\": ")'
 spoil 'does not fit' 'a["metadata"] = np.array(str(a["metadata"]).replace("max_steps=12", "max_steps=13"))'
 spoil 'did not end there' 'a["action"] = np.vstack([a["action"]] * 2); a["episode_begin"][-1] = len(a["action"])'

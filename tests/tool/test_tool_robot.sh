@@ -39,21 +39,21 @@ refused() { # refused TEXT ARGUMENTS...
 }
 sed 's/<mass value="0.02"/<mass value="0"/' "$files/hand.urdf" > bad.urdf
 refused 'bad.urdf: line 26: mass: link index_proximal: the mass 0 is not above 0' robot bad.urdf
-refused 'shadow_hnd: no file, and no robot of that name; nearest is shadow_hand' robot shadow_hnd
+refused 'shadow_hnd: there is no such file, and no robot of that name; nearest is shadow_hand' robot shadow_hnd
 sed 's/\.obj/.dae/' "$files/gripper.urdf" > far.urdf
-refused 'far.urdf: line 50: mesh: mesh package://gripper_description/meshes/pad.dae: not found' robot far.urdf
+refused 'far.urdf: line 50: mesh: mesh package://gripper_description/meshes/pad.dae: it was not found' robot far.urdf
 "$tool" robot far.urdf --skip-meshes > out 2>&1 || say "--skip-meshes: $(cat out)"
-refused 'config.density: of URDF alone' robot "$files/hand.xml" --density 1000
+refused 'config.density: it is for URDF only' robot "$files/hand.xml" --density 1000
 # Flags do with a robot of the list what they do with its file.
-refused 'config.density: of URDF and MJCF' robot shadow_hand --density 1000
+refused 'config.density: it is for URDF and MJCF only' robot shadow_hand --density 1000
 "$tool" robot shadow_hand --name other --out other.robot > out 2>&1 || say "shadow_hand --name: $(cat out)"
-grep -q 'alias shadow: another name of what is now other$' out || say "shadow_hand --name: $(cat out)"
+grep -q 'alias shadow was dropped: the robot is now called other$' out || say "shadow_hand --name: $(cat out)"
 "$tool" robots --robot other.robot | grep -q '^other ' || say "shadow_hand under another name"
 
 # A name that is taken: what the text says to do works.
 sed 's/"plain_hand"/"shadow_hand"/' "$files/hand.urdf" > twin.urdf
 for twin in one.robot twin.urdf; do
-  refused "robot shadow_hand: the name is taken: give it another by redman robot $twin --name NAME --out NAME.robot" robots --robot $twin
+  refused "robot shadow_hand: the name is already used: give it another by redman robot $twin --name NAME --out NAME.robot" robots --robot $twin
   "$tool" robot $twin --name renamed --out renamed.robot > out 2>&1 || say "$twin --name: $(cat out)"
   "$tool" robots --robot renamed.robot | grep -q '^renamed ' || say "$twin under another name"
 done

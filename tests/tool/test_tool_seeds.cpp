@@ -139,8 +139,8 @@ TEST(Scores, SayWhatIsMissing) {
             std::string::npos);
   EXPECT_NE(refused("algorithm,return\na\n", {"algorithm", "", "return", {}}).find("line 2"),
             std::string::npos);
-  EXPECT_EQ(refused(text, {"algorithm", "", "return", {{"task", "z"}}}), "there are no such runs");
-  EXPECT_EQ(refused("", {"algorithm", "", "return", {}}), "there are no such runs");
+  EXPECT_EQ(refused(text, {"algorithm", "", "return", {{"task", "z"}}}), "no run matches");
+  EXPECT_EQ(refused("", {"algorithm", "", "return", {}}), "no run matches");
 }
 
 }  // namespace

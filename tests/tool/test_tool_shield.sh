@@ -74,8 +74,8 @@ refused 'declares no guards' eval --task hand_over_wall --shield project
 refused 'outside' eval --task hand_over_wall --shield predict:block=0
 refused 'words project and predict' eval --task hand_over_wall --shield predict:predict=false
 refused '--resume takes its settings from the folder' train --resume whole --shield off
-refused 'not shared among ranks' train --task bandit --ranks 2 --shield predict
-refused 'beyond its proof' rollout --task hand_over_wall --shield predict --noise 0.1
+refused 'cannot be shared among ranks' train --task bandit --ranks 2 --shield predict
+refused 'the shield proves nothing' rollout --task hand_over_wall --shield predict --noise 0.1
 refused 'reads points' train --task grasp --set encoder=8,8 --set encoder_points=16 --envs 2 --shield predict
 check 'a refused run left its folder' test ! -d runs
 # what was played under a shield plays again without one, and not under another

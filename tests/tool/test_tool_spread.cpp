@@ -66,7 +66,7 @@ TEST(Spread, AnEpisodeThatTroubleEndedIsOverEveryLimitAndNoMeasurement) {
   for (Episode& e : episodes) e.trouble.diverged = 1;
   const Spread none = spread_of(episodes, {7, 3});
   EXPECT_TRUE(std::isnan(none.return_iqm) && std::isnan(none.costs[0].cvar) && !none.return_interval.known());
-  EXPECT_EQ(said(episodes, {7, 3}), std::vector<std::string>({"no episode was a measurement"}));
+  EXPECT_EQ(said(episodes, {7, 3}), std::vector<std::string>({"no episode could be measured"}));
 }
 
 TEST(Spread, WhatIsNotThereIsSaid) {

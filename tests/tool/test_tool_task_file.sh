@@ -51,5 +51,5 @@ expect 'missing.task' eval --task missing.task
 expect 'task own_press: unknown' eval --task own_press
 # Another task of the same name is not taken for it.
 sed 's/own_press/press_button/g' run/config.json > config && cp config run/config.json
-expect 'its task press_button is another than the one of that name that is loaded' eval --task press.task --policy run
+expect 'its task press_button differs from the one of that name that is loaded' eval --task press.task --policy run
 exit $failed

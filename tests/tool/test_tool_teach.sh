@@ -68,8 +68,8 @@ head -c 5000 shown.npz > cut.npz
 refused 1 cut.npz --from cut.npz
 refused 1 hidden --from whole --set max_steps=20 --set hidden=8
 refused 1 'no such file' --from nobody.rdm
-refused 2 'nothing is to be learned' --from zero
-refused 2 'without --from' --noise 0.1
+refused 2 'there is nothing to learn' --from zero
+refused 2 'these flags need a teacher' --noise 0.1
 refused 2 'start-share' --from demo --start-share 2
 refused 2 'observations' --task ball_run --from shown.npz
 exit $failed

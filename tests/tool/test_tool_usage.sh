@@ -36,7 +36,7 @@ expect 2 'not key=value' train --set hidden
 expect 2 'outside' train --set clip=-1
 expect 0 '' rollout --task grasp --policy zero --set max_steps=2 --set 'noise.*_tip_*=0.01..0.02' --set action_delay=1..3
 expect 2 'nearest is object.position' rollout --task grasp --policy zero --set noise.object.positon=0.1
-expect 2 'takes one number, no range' rollout --task grasp --policy zero --set frequency=30..60
+expect 2 'it takes one number, not a range' rollout --task grasp --policy zero --set frequency=30..60
 expect 2 'names no field of the observation; nearest is object.spin' train --task grasp --set actor_obs=object.spn
 expect 2 'not a number' train --cost-limit many
 expect 2 'nearest is drop' train --cost-limit dropp=1

@@ -53,9 +53,9 @@ mkdir -p runs/first
 refused 1 'policy runs/first/polcy.rdm: no such file; nearest is policy.rdm in runs/first' eval --policy runs/first/polcy.rdm
 refused 1 'there is no folder runs/frist' eval --policy runs/frist/policy.rdm
 refused 1 'presss.task: No such file or directory; nearest is press.task' rollout --task presss.task
-refused 1 'is not there; nearest is first in runs' train --resume runs/frst
-refused 1 'is not there; nearest is runs' plot rnus
-refused 1 'is not there; nearest is first in runs' report runs/fisrt
+refused 1 'does not exist; nearest is first in runs' train --resume runs/frst
+refused 1 'does not exist; nearest is runs' plot rnus
+refused 1 'does not exist; nearest is first in runs' report runs/fisrt
 refused 1 'not a regular file' rollout --task ball_run --policy plan:policy=/dev/zero
 refused 2 'no such file; nearest is press.task' tasks --plugin ./pres.task
 
@@ -81,10 +81,10 @@ for value in 10,5 0x10 ten; do refused 2 '--cost-limit' train --task ball_run --
 grep -q 'e+30[0-9]\|[0-9]\{60\}' err && say "a bound is printed with $(cat err)"
 "$tool" rollout --task ball_run --set max_steps=2 --seed 18446744073709551615 > out 2> err || say "the largest seed: $(cat err)"
 "$tool" rollout --task ball_run --set max_steps=2 --envs 70000 --episodes 3 > out 2> err
-grep -qx -- '--envs 70000: no more worlds are made than episodes are played, 3' err || say "70,000 worlds: $(cat err)"
+grep -qx -- '--envs 70000: only as many worlds are used as there are episodes, 3' err || say "70,000 worlds: $(cat err)"
 # What is made of steps that are no whole epochs is said, and of others nothing.
 "$tool" train --task ball_run --envs 2 --set horizon=50 --set max_steps=10 --steps 130 --out odd > out 2> err
-grep -q -- '--steps 130: a run ends with an epoch, of up to 100 steps: it makes up to 200' err || say "130 steps: $(cat err)"
+grep -q -- '--steps 130: a run ends after a whole epoch of up to 100 steps, so it takes up to 200 steps' err || say "130 steps: $(cat err)"
 "$tool" train --task ball_run --envs 2 --set horizon=50 --set max_steps=10 --steps 200 --out even > out 2> err
 grep -q -- '--steps' err && say "200 steps: $(cat err)"
 
@@ -95,11 +95,11 @@ if command -v "${CXX:-c++}" > /dev/null; then
     "${CXX:-c++}" -shared -fPIC p.cpp -o "$2" -Wl,-z,lazy 2> err || say "a plugin does not compile: $(cat err)"
   }
   build 'throw 5;' five.so
-  refused 2 'five.so: redman_plugin threw something that is no std::exception' tasks --plugin five.so
+  refused 2 'five.so: redman_plugin threw something that is not a std::exception' tasks --plugin five.so
   build 'throw std::runtime_error("the sensor is off");' what.so
   refused 2 'what.so: redman_plugin threw an exception: the sensor is off' tasks --plugin what.so
   build 'return -1;' silent.so
-  refused 2 'silent.so: redman_plugin: bad argument: it gave no text' tasks --plugin silent.so
+  refused 2 'silent.so: redman_plugin: bad argument: it gave no error text' tasks --plugin silent.so
 fi
 
 # A decimal comma of the user's environment, or of a plugin's making, is in no number.

@@ -11,17 +11,17 @@ namespace {
 constexpr int kMostDepth = 32;
 
 const Document& member(const Document& object, const char* key) {
-  if (!object.is_object()) throw Failure(std::string(key) + ": stands in no object");
+  if (!object.is_object()) throw Failure(std::string(key) + ": it is not within an object");
   const auto found = object.find(key);
-  if (found == object.end()) throw Failure(std::string(key) + ": missing");
+  if (found == object.end()) throw Failure(std::string(key) + ": it is missing");
   return *found;
 }
 
 std::string text_of(const Document& value, const std::string& what, size_t most) {
-  if (!value.is_string()) throw Failure(what + ": not a text");
+  if (!value.is_string()) throw Failure(what + ": it is not a string");
   const auto& text = value.get_ref<const std::string&>();
-  if (text.size() > most) throw Failure(what + ": longer than " + std::to_string(most) + " bytes");
-  if (printable(text) != text) throw Failure(what + ": holds control characters");
+  if (text.size() > most) throw Failure(what + ": it is longer than " + std::to_string(most) + " bytes");
+  if (printable(text) != text) throw Failure(what + ": it contains control characters");
   return text;
 }
 
@@ -36,9 +36,9 @@ Json object_of(std::initializer_list<JsonMember> members) {
 }
 
 Document parse_json(const char* text, size_t size) {
-  if (size > kMostJsonBytes) throw Failure("longer than " + std::to_string(kMostJsonBytes) + " bytes");
+  if (size > kMostJsonBytes) throw Failure("it is longer than " + std::to_string(kMostJsonBytes) + " bytes");
   const auto shallow = [](int depth, Document::parse_event_t, const Document&) {
-    if (depth > kMostDepth) throw Failure("nested deeper than " + std::to_string(kMostDepth));
+    if (depth > kMostDepth) throw Failure("it is nested deeper than " + std::to_string(kMostDepth));
     return true;
   };
   Document out;
@@ -47,44 +47,45 @@ Document parse_json(const char* text, size_t size) {
   } catch (const Document::exception& e) {
     throw Failure(e.what());
   }
-  if (!out.is_object()) throw Failure("not an object");
+  if (!out.is_object()) throw Failure("it is not an object");
   return out;
 }
 
 const Document& object_at(const Document& object, const char* key) {
   const Document& value = member(object, key);
-  if (!value.is_object()) throw Failure(std::string(key) + ": not an object");
+  if (!value.is_object()) throw Failure(std::string(key) + ": it is not an object");
   return value;
 }
 
 int64_t integer_at(const Document& object, const char* key, int64_t low, int64_t high) {
   const Document& value = member(object, key);
-  if (!value.is_number_integer()) throw Failure(std::string(key) + ": not an integer");
+  if (!value.is_number_integer()) throw Failure(std::string(key) + ": it is not an integer");
   // an unsigned number that is too large for an int64_t would come out negative
   const bool huge = value.is_number_unsigned() && value.get<uint64_t>() > static_cast<uint64_t>(INT64_MAX);
   const int64_t number = huge ? 0 : value.get<int64_t>();
   if (huge || number < low || number > high)
-    throw Failure(std::string(key) + ": outside " + std::to_string(low) + " .. " + std::to_string(high));
+    throw Failure(std::string(key) + ": it is outside " + std::to_string(low) + " .. " +
+                  std::to_string(high));
   return number;
 }
 
 uint64_t seed_at(const Document& object, const char* key) {
   const Document& value = member(object, key);
-  if (!value.is_number_unsigned()) throw Failure(std::string(key) + ": not an integer of 0 or more");
+  if (!value.is_number_unsigned()) throw Failure(std::string(key) + ": it is not an integer of 0 or more");
   return value.get<uint64_t>();
 }
 
 bool flag_at(const Document& object, const char* key) {
   const Document& value = member(object, key);
-  if (!value.is_boolean()) throw Failure(std::string(key) + ": not true or false");
+  if (!value.is_boolean()) throw Failure(std::string(key) + ": it is not true or false");
   return value.get<bool>();
 }
 
 double number_of(const Document& value, const std::string& what, double low, double high) {
-  if (!value.is_number()) throw Failure(what + ": not a number");
+  if (!value.is_number()) throw Failure(what + ": it is not a number");
   const auto number = value.get<double>();
   if (!(number >= low && number <= high))
-    throw Failure(what + ": outside " + number_text(low) + " .. " + number_text(high));
+    throw Failure(what + ": it is outside " + number_text(low) + " .. " + number_text(high));
   return number;
 }
 
@@ -98,7 +99,7 @@ std::string text_at(const Document& object, const char* key, size_t most) {
 
 std::vector<std::string> texts_at(const Document& object, const char* key) {
   const Document& list = member(object, key);
-  if (!list.is_array()) throw Failure(std::string(key) + ": not a list");
+  if (!list.is_array()) throw Failure(std::string(key) + ": it is not a list");
   std::vector<std::string> out;
   for (const Document& text : list) out.push_back(text_of(text, key, 4096));
   return out;
@@ -107,7 +108,7 @@ std::vector<std::string> texts_at(const Document& object, const char* key) {
 const Document& list_at(const Document& object, const char* key, size_t count) {
   const Document& list = member(object, key);
   if (!list.is_array() || list.size() != count)
-    throw Failure(std::string(key) + ": not a list of " + std::to_string(count));
+    throw Failure(std::string(key) + ": it is not a list of " + std::to_string(count));
   return list;
 }
 

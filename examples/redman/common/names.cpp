@@ -74,7 +74,7 @@ CLI::Validator one_of(const std::vector<std::string>& words) {
             value = word;
             return std::string();
           }
-        return value + " is none of " + list + nearest_hint(value, words);
+        return value + " is not one of " + list + nearest_hint(value, words);
       },
       "{" + list + "}");
 }

@@ -36,7 +36,7 @@ Import import_object(const std::string& file) {
     if (rdm_object_find(file.c_str(), &known) != RDM_OK) {
       std::error_code error;
       if (std::filesystem::exists(file, error)) throw Failure(file + ": it is not a regular file");
-      throw Failure(file + ": no file, and no object of that name" + hint_of(file));
+      throw Failure(file + ": there is no such file, and no object of that name" + hint_of(file));
     }
     if (rdm_import_create_object(&made, known) != RDM_OK) throw Failure(rdm_import_error());
   } else if (rdm_import_read_object_file(&made, file.c_str()) != RDM_OK) {
@@ -77,7 +77,7 @@ int32_t load_object_text(const std::string& text, const std::string& where) {
 namespace {
 [[noreturn]] void without() {
   throw Failure(
-      "this tool was built without the readers of objects; install libtinyxml2-dev and libtomlplusplus-dev "
+      "this tool was built without the readers of objects: install libtinyxml2-dev and libtomlplusplus-dev "
       "and configure with -DREDMAN_IMPORT=ON");
 }
 }  // namespace

@@ -63,7 +63,7 @@ std::string first_run_file(const std::string& folder) {
 void check_default_output(const std::string& path, const std::string& mark, const char* flag) {
   constexpr size_t kHead = 1024;
   if (!file_exists(path) || beginning_of(path, kHead).find(mark) != std::string::npos) return;
-  throw Failure(path + " stands here already and was not written by redman: give " + flag + " FILE");
+  throw Failure(path + " exists already and was not written by redman: give " + flag + " FILE");
 }
 
 bool is_run_file(const std::string& path) {

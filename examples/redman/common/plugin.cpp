@@ -59,13 +59,13 @@ bool is_other(Count count) {
 
 // What the plugin answers; the error's text is its own, not that of an earlier call.
 rdm_result call(Plugin plugin, const std::string& owner) {
-  rdm_fail(RDM_ERROR_ARGUMENT, "it gave no text");
+  rdm_fail(RDM_ERROR_ARGUMENT, "it gave no error text");
   try {
     return plugin();
   } catch (const std::exception& e) {
     throw Usage(owner + "redman_plugin threw an exception: " + e.what());
   } catch (...) {
-    throw Usage(owner + "redman_plugin threw something that is no std::exception");
+    throw Usage(owner + "redman_plugin threw something that is not a std::exception");
   }
 }
 

@@ -62,7 +62,7 @@ Import import_robot(const std::string& file, const ImportFlags& flags) {
       if (rdm_robot_at(i, &robot) == RDM_OK) names.emplace_back(robot.name);
     }
     const std::string hint = nearest_hint(file, names);
-    throw Failure(file + ": no file, and no robot of that name" +
+    throw Failure(file + ": there is no such file, and no robot of that name" +
                   (hint.empty() ? missing_file_hint(file) : hint));
   }
   if (r != RDM_OK) throw Failure(rdm_import_error());

@@ -20,7 +20,8 @@ namespace {
 
 double limit_number(const std::string& text, const std::string& whole) {
   double value = 0;
-  if (!read_number(text, &value)) throw Usage("--cost-limit " + whole + ": not a number or name=number");
+  if (!read_number(text, &value))
+    throw Usage("--cost-limit " + whole + ": it is not a number or name=number");
   return value;
 }
 
@@ -32,7 +33,8 @@ void append_keys(const std::vector<rdm_option_spec>& table, std::vector<std::str
 
 std::pair<std::string, std::string> split_pair(const std::string& text, const char* flag) {
   const size_t at = text.find('=');
-  if (at == 0 || at == std::string::npos) throw Usage(std::string(flag) + " " + text + ": not key=value");
+  if (at == 0 || at == std::string::npos)
+    throw Usage(std::string(flag) + " " + text + ": it is not key=value");
   return {text.substr(0, at), text.substr(at + 1)};
 }
 
@@ -73,7 +75,7 @@ void add_envs_flag(CLI::App& command, PoolSettings& pool) {
 
 void say_worlds(const PoolSettings& pool, int32_t episodes) {
   if (pool.envs_given && pool.envs > episodes)
-    std::fprintf(stderr, "--envs %d: no more worlds are made than episodes are played, %d\n", pool.envs,
+    std::fprintf(stderr, "--envs %d: only as many worlds are used as there are episodes, %d\n", pool.envs,
                  episodes);
 }
 
@@ -153,7 +155,8 @@ void apply_sets(const std::vector<std::string>& sets, PoolSettings& pool, AgentS
   const auto algo_table = agent ? algo_options(find_algo(agent->algo)) : std::vector<rdm_option_spec>();
   for (const std::string& text : sets) {
     const auto pair = split_pair(text, "--set");
-    if (printable(text) != text) throw Usage("--set " + text + ": control characters, or not UTF-8");
+    if (printable(text) != text)
+      throw Usage("--set " + text + ": it has control characters, or is not UTF-8");
     const bool of_algo = has_option(algo_table, pair.first);
     // how often an agent decides is the agent's: a pool that repeats would only show less of its worlds
     const bool of_task =

@@ -82,26 +82,26 @@ OwnFiles own_files(const std::string& task) {
 void load_own_files(const std::string& task, const OwnFiles& files, const std::string& where) {
   int32_t index = -1;
   if (files.task.empty() && !files.plugins.empty() && rdm_task_find(task.c_str(), &index) != RDM_OK)
-    throw Failure(where + ": task " + task + " is that of a plugin: give --plugin " + files.plugins.back());
+    throw Failure(where + ": task " + task + " comes from a plugin: give --plugin " + files.plugins.back());
   for (const auto& [name, text] : files.robots) {
     const auto known = loaded().robots.find(name);
     if (known != loaded().robots.end() && known->second == text) continue;
     if (rdm_robot_find(name.c_str(), &index) == RDM_OK)
-      throw Failure(where + ": its robot " + name + " is another than the one of that name that is loaded");
+      throw Failure(where + ": its robot " + name + " differs from the one of that name that is loaded");
     load_robot_text(text, where);
   }
   for (const auto& [name, text] : files.objects) {
     const auto known = loaded().objects.find(name);
     if (known != loaded().objects.end() && known->second == text) continue;
     if (rdm_object_find(name.c_str(), &index) == RDM_OK)
-      throw Failure(where + ": its object " + name + " is another than the one of that name that is loaded");
+      throw Failure(where + ": its object " + name + " differs from the one of that name that is loaded");
     load_object_text(text, where);
   }
   if (files.task.empty()) return;
   const auto known = loaded().tasks.find(task);
   if (known != loaded().tasks.end() && known->second == files.task) return;
   if (rdm_task_find(task.c_str(), &index) == RDM_OK)
-    throw Failure(where + ": its task " + task + " is another than the one of that name that is loaded");
+    throw Failure(where + ": its task " + task + " differs from the one of that name that is loaded");
   const std::string name = add_task(files.task, where);
   if (!same_name(name, task)) throw Failure(where + ": it trained task " + task + ", and holds " + name);
 }

@@ -169,9 +169,9 @@ DemoHand::DemoHand(const redman::Pool& pool, const Options& settings, int32_t si
     arm_joints_ = robot_at(find_robot(arm)).num_joints;
     if (!find_base(pool, robot_, side == 0 ? "right_" : "left_", &base_))
       hindrance_ = "its arm's base has no shape";
-    if (std::atof(option("arm_range").c_str()) != 0) hindrance_ = "it needs set arm_range=0";
-    if (!same_name(option("control"), "position")) hindrance_ = "it needs set control=position";
-    if (std::atof(option("action_average").c_str()) != 1) hindrance_ = "it needs set action_average=1";
+    if (std::atof(option("arm_range").c_str()) != 0) hindrance_ = "set arm_range=0";
+    if (!same_name(option("control"), "position")) hindrance_ = "set control=position";
+    if (std::atof(option("action_average").c_str()) != 1) hindrance_ = "set action_average=1";
   }
   const rdm_robot robot = robot_at(robot_);
   const rdm_robot_def def = def_at(robot_);

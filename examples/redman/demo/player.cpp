@@ -63,7 +63,7 @@ int32_t observed(const redman::Pool& pool, const std::string& word, bool* angle)
 int32_t need_field(const DemoScript& script, int line, const redman::Pool& pool, const std::string& word,
                    bool* angle = nullptr) {
   const int32_t at = observed(pool, word, angle);
-  if (at < 0) bad(script, line, "the task observes no " + word);
+  if (at < 0) bad(script, line, "the observation has no " + word);
   return at;
 }
 
@@ -93,7 +93,7 @@ Demo::Demo(const DemoScript& script, redman::Pool& pool)
         double v = c.value;
         if (c.degrees) {
           const double lower = entries[k].lower, upper = entries[k].upper;
-          if (!(upper > lower)) bad(script, c.line, names[0] + " takes no degrees");
+          if (!(upper > lower)) bad(script, c.line, names[0] + " is not an angle, so it takes no degrees");
           v = (2 * c.value * kPi / 180 - upper - lower) / (upper - lower);
         }
         out.entries.push_back(static_cast<int32_t>(k));
@@ -116,7 +116,7 @@ Demo::Demo(const DemoScript& script, redman::Pool& pool)
       if (out.finger < -1) bad(script, m.line, std::string("the ") + side + " hand has no " + m.point);
       if (!hand.hindrance().empty())
         bad(script, m.line,
-            std::string("the ") + side + " hand cannot be told where to go: " + hand.hindrance());
+            std::string("the ") + side + " hand cannot be moved to a place: " + hand.hindrance());
       std::copy_n(m.p, 3, out.to.p);
       double turn[3];
       for (int k = 0; k < 3; ++k) turn[k] = m.turn[k] * kPi / 180;

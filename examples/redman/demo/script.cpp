@@ -56,7 +56,7 @@ class Line {
   // Whether the next word is a number or begins like one; names begin otherwise.
   bool number_follows() const { return !empty() && std::strchr("+-.0123456789", words_[at_][0]) != nullptr; }
   void end() const {
-    if (!empty()) bad("'" + words_[at_] + "' is too much");
+    if (!empty()) bad("'" + words_[at_] + "' is one word too many");
   }
 
  private:
@@ -76,7 +76,7 @@ std::pair<std::string, std::string> read_pair(Line& line) {
 std::pair<std::string, std::string> read_teach(Line& line) {
   auto pair = read_pair(line);
   const TeachField* field = find_teach_field(pair.first);
-  if (!field) line.bad("'" + pair.first + "' is no setting of train --from that a demonstration gives");
+  if (!field) line.bad("'" + pair.first + "' is not a setting of train --from that a demonstration can give");
   char* end = nullptr;
   const double v = std::strtod(pair.second.c_str(), &end);
   if (pair.second.empty() || *end || !(v >= field->least && v <= field->most) ||
@@ -113,7 +113,7 @@ DemoScript::Command read_command(Line& line, const std::string& entry) {
       if (line.take("+")) c.value = line.number("a number");
       if (line.take("-")) c.value = -line.number("a number");
     }
-    if (!line.take("by")) line.bad("expected 'by' and the observation that is steered");
+    if (!line.take("by")) line.bad("expected 'by' and the observation to steer");
     c.measured = line.word("an observation");
     if (!line.take("gain")) line.bad("expected 'gain' and a number");
     c.gain = line.number("a number");
@@ -143,7 +143,7 @@ DemoScript::Motion read_motion(Line& line, const std::string& word, size_t dot) 
   while (!line.empty()) {
     if (line.take("turned")) {
       m.turned = true;
-      for (double& x : m.turn) x = line.number("three turns in degrees");
+      for (double& x : m.turn) x = line.number("three rotations in degrees");
     } else if (line.take("at")) {
       m.at = line.number_from_zero("a time in s");
     } else if (line.take("over")) {
@@ -214,7 +214,7 @@ DemoScript parse_demo(const char* text, size_t size, const std::string& file) {
       script.phases.emplace_back();
       script.phases.back().name = line.word("the phase's name");
     } else if (script.phases.empty()) {
-      line.bad("'" + word + "' stands before the first phase");
+      line.bad("'" + word + "' comes before the first phase");
     } else if (word == "for") {
       script.phases.back().seconds = line.number_from_zero("a time in s");
     } else if (word == "until") {
@@ -226,8 +226,8 @@ DemoScript parse_demo(const char* text, size_t size, const std::string& file) {
     }
     line.end();
   }
-  if (script.task.empty()) throw Failure("demo " + file + ": no line 'task NAME'");
-  if (script.phases.empty()) throw Failure("demo " + file + ": no phase");
+  if (script.task.empty()) throw Failure("demo " + file + ": it has no line 'task NAME'");
+  if (script.phases.empty()) throw Failure("demo " + file + ": it has no phase");
   return script;
 }
 

@@ -6,7 +6,9 @@
 namespace tool {
 
 Film::Film(const std::string&, int32_t, int32_t, double) {
-  throw Usage("--video: not on Windows; --html and --glb play the episode, --strip draws moments of it");
+  throw Usage(
+      "--video is not available on Windows; use --html or --glb to play the episode, --strip to draw moments "
+      "of it");
 }
 Film::~Film() = default;
 void Film::add(const Image&) {}
@@ -50,7 +52,7 @@ bool pipe_for_us(int ends[2]) {
 
 Film::Film(const std::string& path, int32_t width, int32_t height, double frames_per_second) : path_(path) {
   const bool gif = ends_with(path, ".gif");
-  if (!gif && !ends_with(path, ".mp4")) throw Usage("--video " + path + ": not a .mp4 or .gif file");
+  if (!gif && !ends_with(path, ".mp4")) throw Usage("--video " + path + ": it is not a .mp4 or .gif file");
   check_replaceable(path);
   const std::string size = format("%dx%d", width, height), rate = format("%.6g", frames_per_second);
   // one palette for the whole film; an even size is what H.264 needs

@@ -39,13 +39,13 @@ Hull hull_of(std::vector<Point> points, const std::string& what) {
   qh_freeqhull(qh, !qh_ALL);
   int long_left = 0, total = 0;
   qh_memfreeshort(qh, &long_left, &total);
-  if (failed) throw Failure(what + ": its points are fewer than 4 or in one plane");
+  if (failed) throw Failure(what + ": it has fewer than 4 points, or they lie in one plane");
   return out;
 }
 #else
 Hull hull_of(std::vector<Point>, const std::string&) {
   throw Failure(
-      "hull: this tool was built without qhull; install libqhull-dev and configure with -DREDMAN_QHULL=ON");
+      "hull: this tool was built without qhull: install libqhull-dev and configure with -DREDMAN_QHULL=ON");
 }
 #endif
 

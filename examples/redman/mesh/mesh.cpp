@@ -98,7 +98,7 @@ uint32_t facets_of(const char* bytes, size_t size) {
   if (facets == 0) throw Failure("its header says 0 facets");
   const size_t needed = kStlHeader + kStlFacet * static_cast<size_t>(facets);
   if (needed > size)
-    throw Failure("it is cut off: its header says " + std::to_string(facets) + " facets, " +
+    throw Failure("it is truncated: its header says " + std::to_string(facets) + " facets, " +
                   std::to_string(needed) + " bytes; it has " + std::to_string(size));
   return facets;
 }
@@ -119,7 +119,7 @@ std::vector<Point> parse_mesh(const char* bytes, size_t size, MeshKind kind) {
   const bool binary = kind == MeshKind::kStl && is_binary_stl(bytes, size);
   std::vector<Point> out =
       binary ? binary_points(bytes, facets_of(bytes, size)) : text_points(bytes, size, kind);
-  if (out.empty()) throw Failure("no vertices in it");
+  if (out.empty()) throw Failure("it has no vertices");
   return out;
 }
 
@@ -160,7 +160,7 @@ MeshKind kind_of(const std::string& path) {
     return path.size() >= n && path.compare(path.size() - n, n, with) == 0;
   };
   const bool obj = ends(".obj") || ends(".OBJ");
-  if (!obj && !ends(".stl") && !ends(".STL")) throw Usage(path + ": neither .obj nor .stl");
+  if (!obj && !ends(".stl") && !ends(".STL")) throw Usage(path + ": it is neither .obj nor .stl");
   return obj ? MeshKind::kObj : MeshKind::kStl;
 }
 
@@ -171,7 +171,7 @@ auto parsed(const std::string& path, F&& parse) {
   try {
     auto mesh = parse(bytes.data(), bytes.size(), kind);
     if (const size_t rest = bytes_behind(bytes.data(), bytes.size(), kind))
-      std::fprintf(stderr, "%s: %zu bytes behind its last facet are left out\n", printable(path).c_str(),
+      std::fprintf(stderr, "%s: the %zu bytes after its last facet are ignored\n", printable(path).c_str(),
                    rest);
     return mesh;
   } catch (const Failure& e) {
@@ -199,7 +199,7 @@ Mesh parse_faces(const char* bytes, size_t size, MeshKind kind) {
     for (auto& face : out.faces)
       for (uint32_t& i : face) i = place[i];
   } else {
-    if (corners.size() % 3 != 0) throw Failure("its vertices are not three for each facet");
+    if (corners.size() % 3 != 0) throw Failure("it does not have three vertices for each facet");
     for (size_t i = 0; i < corners.size(); i += 3)
       out.faces.push_back({place[i], place[i + 1], place[i + 2]});
   }

@@ -41,10 +41,10 @@ Mesh finer(const Mesh& mesh) {
 
 std::vector<std::vector<Point>> parts_of(const Mesh& whole, int32_t most, const std::string& what) {
   if (most <= 1) return {whole.points};
-  if (whole.faces.empty()) throw Failure(what + ": it has no faces to be cut by");
+  if (whole.faces.empty()) throw Failure(what + ": it has no faces, so it cannot be cut into parts");
   if (whole.faces.size() > kMostFaces)
     throw Failure(what + ": more than " + std::to_string(kMostFaces) +
-                  " faces, too many to be cut: make it coarser, or give --parts 1");
+                  " faces, which are too many to cut into parts: make it coarser, or give --parts 1");
   Mesh mesh = whole;
   while (mesh.faces.size() < kFewFaces) mesh = finer(mesh);
   std::vector<HACD::Vec3<HACD::Real>> points;
@@ -76,7 +76,7 @@ std::vector<std::vector<Point>> parts_of(const Mesh& whole, int32_t most, const 
 std::vector<std::vector<Point>> parts_of(const Mesh& mesh, int32_t most, const std::string&) {
   if (most <= 1) return {mesh.points};
   throw Failure(
-      "object: this tool was built without HACD; install libbullet-extras-dev and configure with "
+      "object: this tool was built without HACD: install libbullet-extras-dev and configure with "
       "-DREDMAN_HACD=ON, or give --parts 1");
 }
 #endif

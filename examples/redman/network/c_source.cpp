@@ -627,7 +627,7 @@ void check_c_name(const std::string& name) {
   if (!letter || name.size() > 63 || !std::all_of(name.begin(), name.end(), good) ||
       name.find("__") != std::string::npos)
     throw Usage("--name " + name +
-                ": not the beginning of a C name: a letter, then letters, digits and single underscores");
+                ": it cannot begin a C name; give a letter, then letters, digits and single underscores");
 }
 
 std::string c_name_of(const std::string& task) {

@@ -22,7 +22,7 @@ redman::Policy load(const std::string& file) {
   const std::vector<std::string> words = {"trained", "plan", "demo", "zero", "hold", "random"};
   if (const std::string hint = nearest_hint(file, words);
       !hint.empty() && why_no_file(file).rfind("no such", 0) == 0)
-    throw Failure("policy " + file + ": no such file or word" + hint);
+    throw Failure("policy " + file + ": there is no such file or word" + hint);
   if (const std::string problem = why_no_file(file); !problem.empty())
     throw Failure(
         "policy " + file + ": " + problem +
@@ -40,7 +40,7 @@ redman::Agent trained_agent(const std::string& folder, const redman::Pool& pool)
   const RunSettings run = run_settings(folder);
   const std::string task = task_at(pool.spec().task).name, file = folder + "/checkpoint.rdm";
   if (!same_name(run.pool.task, task))
-    throw Failure("critic " + folder + " learned task " + run.pool.task + ", not " + task);
+    throw Failure("critic " + folder + " was trained in task " + run.pool.task + ", not " + task);
   const redman::Pool own = make_pool(run.pool, RDM_AUTORESET_SAME_STEP);
   redman::Agent agent =
       make_agent(run.agent, own, cost_limits(own, run.limits), run.pool.seed, run.pool.threads);
@@ -151,7 +151,7 @@ Actor::Actor(const ActorChoice& choice, redman::Pool& pool, bool stochastic, uin
     const size_t n = pool.num_envs(), width = pool.action().width();
     if (recording_->action_dim != width)
       throw Failure(file_ + " does not fit: it has " + std::to_string(recording_->action_dim) +
-                    " actions, the task " + std::to_string(width));
+                    " actions, but the task has " + std::to_string(width));
     played_.assign(n, 0);
     for (size_t i = 0; i < n; ++i) episode_.push_back(i);
     // what it played drew from the worlds' streams, which are part of their states
@@ -257,8 +257,7 @@ void Actor::replay(redman::Pool& pool, const uint8_t* mask) {
     if (mask && !mask[i]) continue;
     const size_t e = episode_[i];
     if (e >= r.episodes())
-      throw Failure(file_ + " has " + std::to_string(r.episodes()) +
-                    " episodes, and no more are to be had of it");
+      throw Failure(file_ + " has " + std::to_string(r.episodes()) + " episodes, and cannot give more");
     if (played_[i] == 0) {
       const char* state = r.state.data() + e * r.state_bytes;
       try {

@@ -15,11 +15,13 @@ namespace {
 rdm_camera_info cloud_camera(const redman::Pool& pool, const std::string& name) {
   if (!redman::sensors(pool).points)
     throw Usage(
-        "--cloud: these worlds make no clouds; give --set modality=points, or a policy that reads points");
+        "--cloud: these worlds have no point clouds; give --set modality=points, or a policy that reads "
+        "points");
   rdm_camera_info camera = RDM_INIT(rdm_camera_info);
   for (int32_t i = 0; rdm_pool_camera_at(pool.get(), i, &camera) == RDM_OK && !same_name(camera.name, name);)
     ++i;
-  if (camera.mount != 0) throw Usage("--cloud: camera " + name + " rides on a robot; give one that stands");
+  if (camera.mount != 0)
+    throw Usage("--cloud: camera " + name + " is mounted on a robot; give one that is fixed");
   return camera;
 }
 

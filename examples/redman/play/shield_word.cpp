@@ -37,7 +37,7 @@ ShieldWord read_shield_word(const std::string& word) {
     const auto [key, value] = split_pair(item, "--shield:");
     std::vector<std::string> keys;
     for (const rdm_option_spec& row : table) keys.push_back(row.key);
-    if (same_name(key, "predict")) throw Usage(flag + "the words project and predict say that option");
+    if (same_name(key, "predict")) throw Usage(flag + "the words project and predict set that option");
     if (!has_option(table, key))
       throw Usage(flag + "shields have no option " + key + nearest_hint(key, keys));
     out.settings += key + '=' + value + '\n';

@@ -30,7 +30,7 @@ void put_shield(Json& json, const ShieldCounts& c) {
 }
 
 std::string shield_text(const ShieldCounts& c) {
-  return format("shield: it stepped in in %lld of %lld decisions; in %lld nothing was known to be clean\n",
+  return format("shield: it intervened in %lld of %lld decisions; in %lld of them no clean way was found\n",
                 static_cast<long long>(c.interventions), static_cast<long long>(c.decisions),
                 static_cast<long long>(c.unproven));
 }
@@ -40,8 +40,9 @@ redman::Shield make_shield(const ShieldWord& word, const std::string& under, rdm
   config.settings = settings.c_str();
   if (rdm_guard guard = RDM_INIT(rdm_guard);
       !word.predicts && rdm_pool_guard_at(config.pool, 0, &guard, nullptr) != RDM_OK)
-    throw Usage("--shield " + word.word +
-                ": the task declares no guards, as its costs are not of the action alone; give predict");
+    throw Usage(
+        "--shield " + word.word +
+        ": the task declares no guards, because its costs do not depend on the action alone; give predict");
   try {
     return as_usage([&] { return redman::Shield(config); });
   } catch (const Usage& e) {

@@ -77,7 +77,7 @@ Spread spread_of(const std::vector<Episode>& episodes, const std::vector<double>
 std::vector<std::string> remarks_of(const Summary& s, const Spread& spread, const std::vector<double>& limits,
                                     const std::vector<std::string>& costs, int32_t episodes) {
   std::vector<std::string> out;
-  if (std::isnan(s.return_mean)) return {"no episode was a measurement"};
+  if (std::isnan(s.return_mean)) return {"no episode could be measured"};
   if (std::isnan(s.return_stderr))
     return {"one episode has no standard error and no interval: --episodes 100"};
   std::string same;
@@ -90,8 +90,8 @@ std::vector<std::string> remarks_of(const Summary& s, const Spread& spread, cons
   for (size_t k = 0; k < costs.size(); ++k)
     if (limits[k] >= 0 && s.cost_std[k] > limits[k] && episodes < kManyEpisodes)
       out.push_back(
-          format("the deviation of %s, %.4g, is above its limit, %s: its mean is known to +- %s; "
-                 "--episodes %d says more",
+          format("the deviation of %s, %.4g, is above its limit, %s: its mean is known to +- %s; use "
+                 "--episodes %d for more precision",
                  costs[k].c_str(), s.cost_std[k], number_text(limits[k]).c_str(),
                  error_text(s.cost_stderr[k]).c_str(), kManyEpisodes));
   return out;

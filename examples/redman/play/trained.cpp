@@ -38,8 +38,8 @@ std::string trained_policy(const std::string& task) {
   for (int32_t i = 0, n = rdm_task_count(); i < n; ++i)
     if (const std::string other = task_at(i).name; has_trained_policy(other))
       all += (all.empty() ? "" : ", ") + other;
-  throw Failure("policy trained: none for task " + name + " in " + policies_folder().string() +
-                (all.empty() ? ", nor for another" : "; there is one for " + all));
+  throw Failure("policy trained: there is none for task " + name + " in " + policies_folder().string() +
+                (all.empty() ? ", and none for any other task" : "; there is one for " + all));
 }
 
 }  // namespace tool

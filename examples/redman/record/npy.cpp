@@ -28,7 +28,7 @@ std::u32string points_of(const std::string& utf8) {
 
 void append_point(std::string& out, char32_t point) {
   if (point > 0x10ffff || (point >= 0xd800 && point < 0xe000))
-    throw Failure("a text holds what is no character");
+    throw Failure("a text contains an invalid character");
   const auto put = [&](char32_t bits) { out += static_cast<char>(bits); };
   if (point < 0x80) return put(point);
   if (point < 0x800) {
@@ -56,12 +56,13 @@ class Literal {
     return true;
   }
   void need(const std::string& token) {
-    if (!take(token)) throw Failure("not an array of numpy: its header has no " + token);
+    if (!take(token)) throw Failure("it is not a numpy array: its header has no " + token);
   }
   std::string quoted() {
     need("'");
     const size_t end = text_.find('\'', at_);
-    if (end == std::string::npos || end - at_ > 16) throw Failure("not an array of numpy: its type");
+    if (end == std::string::npos || end - at_ > 16)
+      throw Failure("it is not a numpy array: its type cannot be read");
     const std::string out = text_.substr(at_, end - at_);
     at_ = end + 1;
     return out;
@@ -71,10 +72,10 @@ class Literal {
     uint64_t out = 0;
     const size_t begin = at_;
     for (; at_ < text_.size() && text_[at_] >= '0' && text_[at_] <= '9'; ++at_) {
-      if (out > UINT64_MAX / 100) throw Failure("not an array of numpy: its shape");
+      if (out > UINT64_MAX / 100) throw Failure("it is not a numpy array: its shape cannot be read");
       out = 10 * out + static_cast<uint64_t>(text_[at_] - '0');
     }
-    if (at_ == begin) throw Failure("not an array of numpy: its shape");
+    if (at_ == begin) throw Failure("it is not a numpy array: its shape cannot be read");
     return out;
   }
   bool digit() {
@@ -127,9 +128,9 @@ std::string npy_header(const ArrayShape& array) {
 
 ArrayShape parse_npy_head(const char* bytes, size_t size, size_t* begin) {
   if (size < kHeadBytes || std::memcmp(bytes, kMagic, 8) != 0)
-    throw Failure("not an array of numpy, version 1");
+    throw Failure("it is not a numpy array of format version 1");
   const size_t length = static_cast<unsigned char>(bytes[8]) + 256u * static_cast<unsigned char>(bytes[9]);
-  if (length > size - kHeadBytes) throw Failure("an array ends in its header");
+  if (length > size - kHeadBytes) throw Failure("an array ends within its header");
   *begin = kHeadBytes + length;
   Literal text(std::string(bytes + kHeadBytes, length));
   ArrayShape out;
@@ -143,7 +144,7 @@ ArrayShape parse_npy_head(const char* bytes, size_t size, size_t* begin) {
     } else if (text.take("'fortran_order'")) {
       seen |= 2;
       text.need(":");
-      if (!text.take("False")) throw Failure("an array is in the order of Fortran");
+      if (!text.take("False")) throw Failure("an array is in Fortran order, which is not read");
     } else {
       text.need("'shape'");
       seen |= 4;
@@ -158,14 +159,14 @@ ArrayShape parse_npy_head(const char* bytes, size_t size, size_t* begin) {
     if (!text.take(",")) break;
   }
   text.need("}");
-  if (seen != 7) throw Failure("not an array of numpy: its header is not whole");
-  if (out.item_bytes() == 0) throw Failure("an array's type is not known");
+  if (seen != 7) throw Failure("it is not a numpy array: its header is incomplete");
+  if (out.item_bytes() == 0) throw Failure("the type of an array is unknown");
   return out;
 }
 
 ArrayShape parse_npy(const char* bytes, size_t size, size_t* begin) {
   ArrayShape out = parse_npy_head(bytes, size, begin);
-  if (out.bytes() != size - *begin) throw Failure("an array is not as long as it says");
+  if (out.bytes() != size - *begin) throw Failure("an array does not have the length that its header says");
   return out;
 }
 
@@ -182,7 +183,7 @@ std::string text_bytes(const std::string& utf8) {
 }
 
 std::string text_of_array(const ArrayShape& array, const char* bytes) {
-  if (array.type.compare(0, 2, "<U") != 0 || !array.shape.empty()) throw Failure("an array is no text");
+  if (array.type.compare(0, 2, "<U") != 0 || !array.shape.empty()) throw Failure("an array is not a text");
   std::string out;
   for (size_t i = 0; i < array.item_bytes() / 4; ++i) {
     char32_t point;

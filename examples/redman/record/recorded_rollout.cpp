@@ -33,8 +33,9 @@ Array head_of(const ZipReader& zip, const std::string& name, const char* type, s
     throw Failure(name + ": " + e.what());
   }
   if ((type && a.shape.type != type) || a.shape.shape.size() != dimensions)
-    throw Failure(name + ": another type or shape than a rollout's");
-  if (a.shape.bytes() != zip.size(name + ".npy") - a.begin) throw Failure(name + ": not as long as it says");
+    throw Failure(name + ": it does not have the type or shape of a rollout's array");
+  if (a.shape.bytes() != zip.size(name + ".npy") - a.begin)
+    throw Failure(name + ": it does not have the length that its header says");
   return a;
 }
 
@@ -47,17 +48,17 @@ void read_numbers(const ZipReader& zip, const std::string& name, Array* a) {
 Recording parse_recording(const ZipReader& zip) {
   Recording r;
   Array text = head_of(zip, "metadata", nullptr, 0);
-  if (text.shape.bytes() > 4 * kMostJsonBytes) throw Failure("metadata: too long");
+  if (text.shape.bytes() > 4 * kMostJsonBytes) throw Failure("metadata: it is too long");
   read_numbers(zip, "metadata", &text);
   const std::string json_text = text_of_array(text.shape, text.bytes.data() + text.begin);
   const Document json = parse_json(json_text.data(), json_text.size());
-  if (text_at(json, "format") != "redman rollout 1") throw Failure("of another format than redman rollout 1");
+  if (text_at(json, "format") != "redman rollout 1") throw Failure("its format is not redman rollout 1");
   r.pool.task = text_at(json, "task");
   r.pool.seed = seed_at(json, "seed");
   r.pool.envs = static_cast<int32_t>(integer_at(json, "envs", 1, 65536));
   for (const std::string& set : texts_at(json, "set")) {
     const size_t at = set.find('=');
-    if (at == 0 || at == std::string::npos) throw Failure("set " + set + ": not key=value");
+    if (at == 0 || at == std::string::npos) throw Failure("set " + set + ": it is not key=value");
     r.pool.options.emplace_back(set.substr(0, at), set.substr(at + 1));
   }
   r.policy = text_at(json, "policy");
@@ -67,8 +68,8 @@ Recording parse_recording(const ZipReader& zip) {
         state = head_of(zip, "state", "|u1", 2);
   const uint64_t episodes = begin.shape.shape[0] - 1;  // of 0: more than there may be
   if (episodes < 1 || episodes > kMostEpisodes)
-    throw Failure("episode_begin: not the first steps of its episodes");
-  if (state.shape.shape[0] != episodes) throw Failure("state: not one for each episode");
+    throw Failure("episode_begin: its rows are not the first steps of its episodes");
+  if (state.shape.shape[0] != episodes) throw Failure("state: it does not have one state for each episode");
   const uint64_t most = std::max(kMostUnpacked, kMostPacked * zip.size());
   if (action.shape.bytes() > most || state.shape.bytes() > most - action.shape.bytes())
     throw Failure("action, state: " + std::to_string(action.shape.bytes()) + " and " +
@@ -78,7 +79,7 @@ Recording parse_recording(const ZipReader& zip) {
   r.begin.resize(static_cast<size_t>(begin.shape.shape[0]));
   std::memcpy(r.begin.data(), begin.bytes.data() + begin.begin, r.begin.size() * sizeof(uint64_t));
   if (r.begin[0] != 0 || r.begin.back() != action.shape.shape[0])
-    throw Failure("episode_begin: not the first steps of its episodes");
+    throw Failure("episode_begin: its rows are not the first steps of its episodes");
   for (size_t e = 0; e < r.episodes(); ++e)
     if (r.begin[e] >= r.begin[e + 1])
       throw Failure("episode_begin: episode " + std::to_string(e) + " has no step");

@@ -46,7 +46,7 @@ template <class T>
 T value_at(const std::string& bytes, size_t at) {
   T value;
   if (at > bytes.size() || bytes.size() - at < sizeof value)
-    throw Failure("an archive's directory is cut off");
+    throw Failure("the archive's directory is truncated");
   std::memcpy(&value, bytes.data() + at, sizeof value);
   return value;
 }
@@ -59,7 +59,7 @@ uint32_t checksum_of(uint32_t before, const void* bytes, size_t size) {
 std::string inflated(const std::string& packed, size_t size, bool whole) {
   std::string out(size, '\0');
   z_stream z{};
-  if (inflateInit2(&z, -MAX_WBITS) != Z_OK) throw Failure("zlib gives up");
+  if (inflateInit2(&z, -MAX_WBITS) != Z_OK) throw Failure("zlib reports an error");
   constexpr size_t kPart = size_t{1} << 30;  // its counters have 32 bits
   size_t in = 0, done = 0;
   int state = Z_OK;
@@ -76,7 +76,7 @@ std::string inflated(const std::string& packed, size_t size, bool whole) {
   }
   inflateEnd(&z);
   const bool ended = state == Z_STREAM_END;
-  if (done != size || (whole && !ended)) throw Failure("a packed array is spoiled");
+  if (done != size || (whole && !ended)) throw Failure("a compressed array is damaged");
   return out;
 }
 
@@ -142,12 +142,13 @@ ZipReader::ZipReader(uint64_t size, Read read) : size_(size), read_(std::move(re
   read_(size - tail_bytes, tail.data(), tail_bytes);
   constexpr uint32_t kSignature = kEnd;
   const size_t end = tail.rfind(std::string(reinterpret_cast<const char*>(&kSignature), 4));
-  if (end == std::string::npos || tail.size() - end < kEndBytes) throw Failure("not a whole archive (.npz)");
+  if (end == std::string::npos || tail.size() - end < kEndBytes)
+    throw Failure("it is not a complete archive (.npz)");
   uint64_t count = value_at<uint16_t>(tail, end + 10), bytes = value_at<uint32_t>(tail, end + 12),
            begin = value_at<uint32_t>(tail, end + 16);
   if (end >= kLocatorBytes && value_at<uint32_t>(tail, end - kLocatorBytes) == kLocator64) {
     const auto at = value_at<uint64_t>(tail, end - kLocatorBytes + 8);
-    if (at > size || size - at < kEnd64Bytes) throw Failure("an archive's directory is cut off");
+    if (at > size || size - at < kEnd64Bytes) throw Failure("the archive's directory is truncated");
     std::string wide(kEnd64Bytes, '\0');
     read_(at, wide.data(), wide.size());
     count = value_at<uint64_t>(wide, 32);
@@ -155,7 +156,7 @@ ZipReader::ZipReader(uint64_t size, Read read) : size_(size), read_(std::move(re
     begin = value_at<uint64_t>(wide, 48);
   }
   if (bytes > kMostDirectory || begin > size || size - begin < bytes)
-    throw Failure("an archive's directory is cut off");
+    throw Failure("the archive's directory is truncated");
   std::string directory(static_cast<size_t>(bytes), '\0');
   read_(begin, directory.data(), directory.size());
   size_t at = 0;
@@ -163,7 +164,7 @@ ZipReader::ZipReader(uint64_t size, Read read) : size_(size), read_(std::move(re
 }
 
 void ZipReader::add_member(const std::string& directory, size_t& at) {
-  if (value_at<uint32_t>(directory, at) != kCentral) throw Failure("an archive's directory is spoiled");
+  if (value_at<uint32_t>(directory, at) != kCentral) throw Failure("the archive's directory is damaged");
   Member m;
   const auto flags = value_at<uint16_t>(directory, at + 8), method = value_at<uint16_t>(directory, at + 10);
   m.deflated = method == kDeflated;
@@ -174,12 +175,12 @@ void ZipReader::add_member(const std::string& directory, size_t& at) {
                comment = value_at<uint16_t>(directory, at + 32);
   m.offset = value_at<uint32_t>(directory, at + 42);
   at += kCentralBytes;
-  if (directory.size() - at < name + extra + comment) throw Failure("an archive's directory is cut off");
+  if (directory.size() - at < name + extra + comment) throw Failure("the archive's directory is truncated");
   m.name = directory.substr(at, name);
   const size_t end = at + name + extra;
   for (size_t e = at + name; end - e >= 4;) {
     const auto id = value_at<uint16_t>(directory, e), length = value_at<uint16_t>(directory, e + 2);
-    if (length > end - e - 4) throw Failure("an archive's directory is spoiled");
+    if (length > end - e - 4) throw Failure("the archive's directory is damaged");
     size_t field = e + 4;
     for (uint64_t* value : {&m.size, &m.packed, &m.offset}) {
       if (id != kExtra64 || *value != kFull || field + 8 > e + 4 + length) continue;
@@ -190,9 +191,9 @@ void ZipReader::add_member(const std::string& directory, size_t& at) {
   }
   at = end + comment;
   if ((flags & 1) || (method != 0 && !m.deflated))
-    throw Failure("member " + m.name + " is packed in a way that is not known");
+    throw Failure("member " + m.name + " is compressed in an unknown way");
   if (m.packed > size_ || (m.deflated ? m.size / kMostRatio > m.packed : m.size != m.packed))
-    throw Failure("member " + m.name + " is cut off");
+    throw Failure("member " + m.name + " is truncated");
   members_.push_back(std::move(m));
 }
 
@@ -203,18 +204,19 @@ bool ZipReader::has(const std::string& name) const {
 const ZipReader::Member& ZipReader::find(const std::string& name) const {
   const auto found =
       std::find_if(members_.begin(), members_.end(), [&](const Member& m) { return m.name == name; });
-  if (found == members_.end()) throw Failure("it holds no " + name);
+  if (found == members_.end()) throw Failure("it has no " + name);
   return *found;
 }
 
 // Where its bytes are.
 uint64_t ZipReader::begin_of(const Member& m) const {
-  if (m.offset > size_ || size_ - m.offset < kLocalBytes) throw Failure("member " + m.name + " is cut off");
+  if (m.offset > size_ || size_ - m.offset < kLocalBytes) throw Failure("member " + m.name + " is truncated");
   std::string head(kLocalBytes, '\0');
   read_(m.offset, head.data(), head.size());
-  if (value_at<uint32_t>(head, 0) != kLocal) throw Failure("member " + m.name + " is not where it should be");
+  if (value_at<uint32_t>(head, 0) != kLocal)
+    throw Failure("member " + m.name + " is not where the archive's directory says");
   const uint64_t begin = m.offset + kLocalBytes + value_at<uint16_t>(head, 26) + value_at<uint16_t>(head, 28);
-  if (begin > size_ || size_ - begin < m.packed) throw Failure("member " + m.name + " is cut off");
+  if (begin > size_ || size_ - begin < m.packed) throw Failure("member " + m.name + " is truncated");
   return begin;
 }
 
@@ -240,7 +242,7 @@ std::string ZipReader::member(const std::string& name, uint64_t most) const {
   read_(begin_of(m), bytes.data(), bytes.size());
   if (m.deflated) bytes = inflated(bytes, static_cast<size_t>(m.size), true);
   if (checksum_of(0, bytes.data(), bytes.size()) != m.checksum)
-    throw Failure("member " + name + " is spoiled");
+    throw Failure("member " + name + " is damaged");
   return bytes;
 }
 

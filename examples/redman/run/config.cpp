@@ -40,7 +40,7 @@ ShieldWord shield_at(const Document& object, const char* key) {
 // A file's text as it was, tabs and all: who reads it judges it.
 std::string file_at(const Document& object, const std::string& key) {
   const auto found = object.find(key);
-  if (found == object.end() || !found->is_string()) throw Failure(key + ": not a text");
+  if (found == object.end() || !found->is_string()) throw Failure(key + ": it is not a string");
   return found->get<std::string>();
 }
 

@@ -39,10 +39,10 @@ void make_folders(const std::string& path) {
     std::error_code unread;
     if (!fs::is_symlink(fs::symlink_status(at, unread)) || fs::exists(at, unread)) continue;
     throw Failure("cannot make folder " + path + ": " + at.string() + " is a link to " +
-                  fs::read_symlink(at, unread).string() + ", which is not there");
+                  fs::read_symlink(at, unread).string() + ", which does not exist");
   }
   throw Failure("cannot make folder " + path + ": " +
-                (error ? error.message() : "something else has its name"));
+                (error ? error.message() : "something else has this name"));
 }
 
 int locked(const std::string& path) {
@@ -119,14 +119,15 @@ RunFolder RunFolder::create_default(const RunSettings& settings) {
       throw Failure("cannot make folder " + path + ": " + error.message());
   }
   throw Failure("cannot make folder " + first + ": " + std::to_string(kMostTwins) +
-                " of its name stand there");
+                " folders of its name exist");
 }
 
 RunFolder RunFolder::go_on(const std::string& path) {
   if (!file_exists(path + "/config.json"))
-    throw Failure(path + " is not a run folder: " +
-                  (is_folder(path) ? "it has no config.json" : "it is not there" + missing_file_hint(path)) +
-                  "; start one with train --out " + path);
+    throw Failure(
+        path + " is not a run folder: " +
+        (is_folder(path) ? "it has no config.json" : "it does not exist" + missing_file_hint(path)) +
+        "; start one with train --out " + path);
   RunFolder folder(path, locked(path));
   folder.goes_on_ = true;
   check_run_files(path);
@@ -206,7 +207,7 @@ void RunFolder::cut_progress(size_t bytes, bool with_events) {
   const int error = errno;
   if (opened) close(f);
   if (opened && !enough)
-    throw Failure(progress() + " is shorter than the checkpoint says; start the run anew");
+    throw Failure(progress() + " is shorter than the checkpoint says; start the run again");
   if (!good) throw Failure("cannot shorten " + progress() + ": " + std::strerror(error));
   const std::string kept = read_file(progress());
   header_ = kept.substr(0, kept.find('\n'));

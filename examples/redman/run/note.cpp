@@ -59,10 +59,10 @@ Note parse_note(const char* bytes, size_t size) {
   }
   if (!json.contains("best")) return note;
   const Document& best = list_at(json, "best", 3);
-  if (!best[0].is_boolean()) throw Failure("best: does not begin with true or false");
+  if (!best[0].is_boolean()) throw Failure("best: it does not begin with true or false");
   note.best = {best[0].get<bool>(), finite_or(best[1], "best", -DBL_MAX),
                finite_or(best[2], "best", DBL_MAX)};
-  if (rest == bytes + size) throw Failure("best: no policy follows");
+  if (rest == bytes + size) throw Failure("best: it has no policy");
   note.best_policy.assign(rest, bytes + size);
   return note;
 }

@@ -26,7 +26,7 @@ class Forked final : public Ranks {
   explicit Forked(int ranks) {
     std::fflush(nullptr);
     if (fork_ranks_begin(&processes_, ranks, &hooks_) != 0)
-      throw Failure(std::string("--ranks: the system refuses: ") + std::strerror(errno));
+      throw Failure(std::string("--ranks: the system reports: ") + std::strerror(errno));
   }
   int end(int status) override { return fork_ranks_end(processes_, status); }
 
@@ -40,7 +40,7 @@ class Mpi final : public Ranks {
  public:
   Mpi() {
     if (const int error = mpi_ranks_begin(&hooks_))
-      throw Failure("--ranks mpi: MPI's error " + std::to_string(error));
+      throw Failure("--ranks mpi: MPI reports error " + std::to_string(error));
   }
   int end(int status) override {
     mpi_ranks_end(status);
@@ -61,11 +61,11 @@ std::unique_ptr<Ranks> Ranks::begin(const std::string& text) {
   }
   int64_t ranks = 0;
   if (!read_whole(text, &ranks) || ranks < 1 || ranks > kMostForked)
-    throw Usage("--ranks " + printable(text) + ": not a number of 1 to 256, nor mpi");
+    throw Usage("--ranks " + printable(text) + ": it is neither a number from 1 to 256 nor mpi");
 #if defined(__linux__)
   return std::make_unique<Forked>(static_cast<int>(ranks));
 #else
-  throw Usage("--ranks: processes are forked on Linux alone; mpi takes those of MPI");
+  throw Usage("--ranks N works on Linux only; use --ranks mpi elsewhere");
 #endif
 }
 

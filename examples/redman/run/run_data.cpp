@@ -26,8 +26,8 @@ std::vector<std::string> find_runs(const std::string& folder) {
       found.push_back(at->path().parent_path().string());
   if (found.empty())
     throw Failure(folder + " holds no run: " +
-                  (is_folder(folder) ? "no config.json in it or below"
-                                     : "it is not there" + missing_file_hint(folder)));
+                  (is_folder(folder) ? "there is no config.json in it or below it"
+                                     : "it does not exist" + missing_file_hint(folder)));
   std::sort(found.begin(), found.end());
   return found;
 }

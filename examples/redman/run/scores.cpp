@@ -66,7 +66,7 @@ std::vector<Scored> parse_scores(const char* text, size_t size, const ScoreColum
     if (out[name].runs.size() <= task) out[name].runs.resize(task + 1);
     out[name].runs[task].push_back(score);
   }
-  if (out.empty()) throw Failure("there are no such runs");
+  if (out.empty()) throw Failure("no run matches");
   for (const Scored& s : out)
     for (size_t t = 0; t < tasks.size(); ++t)
       if (t >= s.runs.size() || s.runs[t].empty())

@@ -55,7 +55,7 @@ PoolSettings eval_settings(const RunSettings& run) {
 PoolSettings part_of(const PoolSettings& whole, const Ranks* ranks) {
   PoolSettings s = whole;
   if (ranks && s.envs % ranks->count() != 0)
-    throw Usage(format("--ranks: %d do not divide %d worlds", ranks->count(), s.envs));
+    throw Usage(format("--ranks: %d does not divide the number of worlds, %d", ranks->count(), s.envs));
   if (ranks) s.envs /= ranks->count();
   return s;
 }
@@ -96,7 +96,7 @@ Trainer::Trainer(RunSettings settings, const Ranks* ranks)
 // Its first backup is the agent itself. What no plan avoids happens, and is counted.
 void Trainer::add_shield() {
   const std::string flag = "--shield " + settings_.shield.word + ": ";
-  if (ranks_) throw Usage(flag + "it is not shared among ranks; train without --ranks");
+  if (ranks_) throw Usage(flag + "a shield cannot be shared among ranks; train without --ranks");
   if (settings_.shield.predicts && redman::Policy(agent_.policy()).info().num_points > 0)
     throw Usage(flag + "the agent's encoder reads points, which copies of worlds do not have");
   auto config = redman::shield_config(pool_);
@@ -122,7 +122,8 @@ void Trainer::learn_from_teacher() {
                   first() ? settings_.save_recording : std::string());
   const rdm_recording* recording = taught_.recording.get();
   if (!recording && (wants_imitation() || wants_starts()))
-    throw Usage("--start-share, imitation: a recording is needed: --from demo, a .npz file, or --dagger");
+    throw Usage(
+        "--start-share and imitation need a recording: give --from demo, --from FILE.npz, or --dagger");
   if (!recording) return;
   if (wants_imitation()) redman::check(rdm_agent_set_recording(agent_.get(), recording));
   if (wants_starts())
@@ -232,7 +233,8 @@ void Trainer::restore(const std::string& path) {
     progress_bytes_ = note.progress_bytes;
     earlier_seconds_ = note.seconds;
     if (note.clock_lost && first())
-      std::fputs("the checkpoint's time of training is out of range: Time/Total begins at 0 again\n", stderr);
+      std::fputs("the training time in the checkpoint is out of range: Time/Total starts from 0 again\n",
+                 stderr);
     if (note.last) last_ = *note.last;
     best_ = note.best;
     best_policy_ = std::move(note.best_policy);
@@ -318,7 +320,7 @@ void Trainer::run() {
     if (saved_epoch_ < 1) throw;
     if (!file_exists(folder_->checkpoint()))
       throw Failure(std::string(e.what()) + "; " + folder_->checkpoint() +
-                    " was removed: there is nothing to resume from");
+                    " was removed, so there is nothing to resume from");
     throw Failure(
         std::string(e.what()) +
         format("; the checkpoint of epoch %d is kept: continue with train --resume ", saved_epoch_) +
@@ -330,7 +332,7 @@ void Trainer::run() {
     meter.say(saved_epoch_ > 0
                   ? format("stopped; the checkpoint is at epoch %d: continue with train --resume %s",
                            saved_epoch_, folder_->path().c_str())
-                  : "stopped inside the first epoch: there is no checkpoint yet");
+                  : "stopped within the first epoch: there is no checkpoint yet");
   finish();
 }
 
@@ -341,7 +343,7 @@ void Trainer::finish() {
   const redman::Bytes last = agent_.policy();
   if (scored_epoch_ != epoch_) compete(last, nullptr);
   if (!best_)
-    std::fputs("redman: episodes of every policy that was evaluated diverged: the last policy is kept\n",
+    std::fputs("redman: every evaluated policy had episodes that diverged: the last policy is kept\n",
                stderr);
   const redman::Bytes& kept = best_ ? best_policy_ : last;
   folder_->write_policy({kept.begin(), kept.end()});

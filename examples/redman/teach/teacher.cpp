@@ -141,7 +141,7 @@ rdm_pretrain_report pretrain(const TeachSettings& s, const PoolSettings& setting
   const bool taught = s.asked() && !is_file(s.from);
   Lesson lesson(s, own, choose_actor(taught ? s.from : "random", settings.task), repeat, own.seed);
   const rdm_sensors seen = redman::sensors(lesson.pool());
-  if (!seen.points) throw Usage("--pretrain: the agent reads no points: --set encoder=64,128");
+  if (!seen.points) throw Usage("--pretrain: the agent does not read points; give --set encoder=64,128");
   redman::Recording shown(lesson.pool(), s.pretrain + settings.envs);
   RoundMeans means;
   while (shown.info().rows < s.pretrain) lesson.decide(shown, nullptr, 1, &means);
@@ -165,7 +165,7 @@ rdm_pretrain_report pretrain(const TeachSettings& s, const PoolSettings& setting
 // Rows of episodes without success go.
 void drop_failures(redman::Recording& recording) {
   recording.filter(true);
-  if (recording.info().rows == 0) throw Failure("--success-only: no episode of the teacher's succeeded");
+  if (recording.info().rows == 0) throw Failure("--success-only: no episode of the teacher succeeded");
 }
 
 void load_policy(const std::string& file, const redman::Pool& pool, redman::Agent& agent) {
@@ -231,7 +231,7 @@ Taught teach(const TeachSettings& s, const PoolSettings& settings, redman::Agent
     return out;
   }
   const ActorChoice teacher = choose_actor(s.from, settings.task);
-  if (teacher.baseline >= 0) throw Usage("--from " + s.from + ": nothing is to be learned from that");
+  if (teacher.baseline >= 0) throw Usage("--from " + s.from + ": there is nothing to learn from this");
   if (!teacher.demo && s.dagger == 0) {
     load_policy(teacher.file, make_pool(settings, RDM_AUTORESET_OFF), agent);
     std::fprintf(stderr, "begins with the policy %s\n", printable(s.from).c_str());

@@ -63,9 +63,8 @@ std::string base64(const void* bytes, size_t size) {
 void check_viewer() {
   if (!asset("three"))
     throw Failure(
-        "--html: this build has no viewer library: install the package libjs-three (or give "
-        "REDMAN_VIEWER=FILE, "
-        "a three.min.js), configure and build again; --glb works without");
+        "--html: this build has no viewer library: install the package libjs-three (or set REDMAN_VIEWER to "
+        "a three.min.js), configure and build again; --glb works without it");
 }
 
 }  // namespace tool

@@ -92,10 +92,10 @@ void each_word(const char* list, F&& f) {
 int32_t read_cameras(const char* list, const TaskInfo& info, const Task& task, const char* key, Camera* out) {
   int32_t count = 0;
   each_word(list, [&](const char* word) {
-    if (count == kMaxCameras) fail(Code::kRange, "%s: more than %d", key, kMaxCameras);
+    if (count == kMaxCameras) fail(Code::kRange, "%s: there are more than %d", key, kMaxCameras);
     out[count++] = camera_of(info, task, word);
   });
-  if (count == 0) fail(Code::kArgument, "%s: none is named", key);
+  if (count == 0) fail(Code::kArgument, "%s: it names no camera", key);
   return count;
 }
 
@@ -180,7 +180,7 @@ SenseConfig sense_from(const Options& options, const TaskInfo& info, const Task&
     c.point_color = o.point_color;
     c.goal_points = o.goal_points;
     if (c.goal_points && !task.has_goal())
-      fail(Code::kArgument, "goal_points: task %s brings no object to a pose", info.name);
+      fail(Code::kArgument, "goal_points: task %s has no object with a goal pose", info.name);
     if (c.goal_points >= c.num_points)
       fail(Code::kRange, "goal_points: %d is outside [0, points - 1 = %d]", c.goal_points, c.num_points - 1);
   }

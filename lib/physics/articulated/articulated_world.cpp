@@ -380,9 +380,9 @@ bool same_motion(const Motion& a, const Motion& b) {
 
 void ArticulatedWorld::check(Reader& in) const {
   const SolverDef& solver = scene_->def.solver;
-  if (in.value<int32_t>() != tag()) fail(Code::kFormat, "world state: it is of another engine");
+  if (in.value<int32_t>() != tag()) fail(Code::kFormat, "world state: it belongs to another engine");
   if (in.value<int32_t>() != scene_->num_links || in.value<int32_t>() != scene_->num_bodies)
-    fail(Code::kFormat, "world state: it is of another scene");
+    fail(Code::kFormat, "world state: it belongs to another scene");
   bool good = sound_rows(in, *scene_);
   for (size_t a = 0; a < scene_->def.articulations.size(); ++a) {
     const auto base = in.value<Motion>();

@@ -253,7 +253,7 @@ Tree make_tree(const Scene& scene, int32_t articulation) {
   tree.num_links = static_cast<int32_t>(def.links.size());
   tree.num_coords = tree.coord(tree.num_links);
   if (tree.num_coords > kMaxCoords)
-    fail(Code::kUnsupported, "%s: %d coordinates, the engine takes at most %d", def.name.text,
+    fail(Code::kUnsupported, "%s: it has %d coordinates, but the engine takes at most %d", def.name.text,
          tree.num_coords, kMaxCoords);
   Vector<int32_t> parents;  // of each coordinate
   if (def.free_base)
@@ -288,7 +288,7 @@ void check_masses(const Scene& scene, const Tree& tree) {
       const MemberLink& link = member.links[i];
       if (!is_massless(link.inertia) || link.joint.armature > 0) has_inertia[i] = 1;
       if (!has_inertia[i])
-        fail(Code::kRange, "%s: a link needs mass, or a heavier link or armature behind it",
+        fail(Code::kRange, "%s: the link needs a mass, an armature, or a child link with mass",
              scene.link(member.first_link + static_cast<int32_t>(i)).name.text);
       if (tree.links[i].parent >= 0) has_inertia[static_cast<size_t>(tree.links[i].parent)] = 1;
     }

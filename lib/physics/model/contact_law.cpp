@@ -41,9 +41,9 @@ void check_law(const ContactLaw& law) {
   need(law.impedance_width, 1e-9, 10, "impedance_width");
   if (law.soft() && law.restitution > 0)
     fail(Code::kArgument,
-         "contact law: restitution is of hard contacts: a soft one bounces by its damping_ratio");
+         "contact law: restitution is for hard contacts only; a soft contact bounces by its damping_ratio");
   if (law.pyramid && !law.soft())
-    fail(Code::kArgument, "contact law: a pyramid is of soft contacts: it wants a time_constant");
+    fail(Code::kArgument, "contact law: a friction pyramid is for soft contacts only; set a time_constant");
 }
 
 }  // namespace rdm

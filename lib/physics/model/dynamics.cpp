@@ -94,7 +94,7 @@ bool Dynamics::same(const Dynamics& other) const {
 void Dynamics::check(const Scene& scene) const {
   if (num_links != scene.num_links || num_bases != static_cast<int32_t>(scene.def.articulations.size()) ||
       num_bodies != scene.num_bodies || num_friction != count_friction(scene))
-    fail(Code::kArgument, "dynamics: it is of another scene");
+    fail(Code::kArgument, "dynamics: it belongs to another scene");
   const auto need = [](double x, const double* bounds, const char* field, const char* kind, int32_t i) {
     if (!inside(x, bounds))
       fail(Code::kRange, "dynamics: factor %s of %s of %s %d is outside [%s, %s]", Number(x).text, field,

@@ -66,7 +66,7 @@ class Builder {
  public:
   Builder(const Vec3* points, int32_t count, const char* owner) : owner_(owner) {
     if (count < 4 || count > Hull::kMostPoints)
-      fail(Code::kRange, "%s: %d points are outside [4, %d]", owner, count, Hull::kMostPoints);
+      fail(Code::kRange, "%s: the number of points, %d, is outside [4, %d]", owner, count, Hull::kMostPoints);
     hull_.num_points = count;
     for (int32_t i = 0; i < count; ++i) {
       if (!finite(points[i])) fail(Code::kArgument, "%s: point %d is not finite", owner, i);
@@ -76,7 +76,8 @@ class Builder {
       size_ = std::max(size_, norm(points[i] - points[0]));
     }
     if (size_ < kSmallest)
-      fail(Code::kArgument, "%s: the points are too near each other: all lie within %g m", owner, kSmallest);
+      fail(Code::kArgument, "%s: the points are too close to each other: all lie within %g m", owner,
+           kSmallest);
   }
   Hull make() {
     const int32_t n = hull_.num_points;
@@ -84,7 +85,8 @@ class Builder {
       for (int32_t j = i + 1; j < n; ++j)
         for (int32_t k = j + 1; k < n; ++k) try_face(i, j, k);
     keep_corners();
-    if (!closed()) fail(Code::kArgument, "%s: the points are in one plane or too near each other", owner_);
+    if (!closed())
+      fail(Code::kArgument, "%s: the points lie in one plane, or too close to each other", owner_);
     weigh();
     return hull_;
   }

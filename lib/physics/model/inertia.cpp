@@ -50,7 +50,7 @@ Solid solid_of(const ShapeDef& s) {
     case ShapeKind::kPlane:
       break;
   }
-  fail(Code::kArgument, "shape %s: kind %d makes no body", s.name.text, static_cast<int>(s.kind));
+  fail(Code::kArgument, "shape %s: kind %d cannot be part of a body", s.name.text, static_cast<int>(s.kind));
 }
 
 }  // namespace
@@ -137,7 +137,7 @@ Inertia shapes_inertia(const ShapeDef* shapes, int32_t count, double mass) {
     const ShapeDef& s = shapes[i];
     Solid solid = solid_of(s);
     if (!(solid.volume > 0 && solid.volume < 1e12) || !finite(s.X_LS.p))
-      fail(Code::kRange, "shape %s: a size or its place is not within bounds", s.name.text);
+      fail(Code::kRange, "shape %s: a size or its position is out of bounds", s.name.text);
     volume += solid.volume;
     solid.unit.mass *= solid.volume;
     for (double& m : solid.unit.moment) m *= solid.volume;

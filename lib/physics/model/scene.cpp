@@ -26,7 +26,8 @@ void check_pose(Pose* X, const char* owner) {
   need_finite(X->p, owner, "position");
   const Quat& q = X->q;
   const double square = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
-  if (!(std::fabs(square - 1) < 1e-4)) fail(Code::kArgument, "%s: the quaternion is not a unit one", owner);
+  if (!(std::fabs(square - 1) < 1e-4))
+    fail(Code::kArgument, "%s: the quaternion does not have length 1", owner);
   if (std::fabs(square - 1) > 1e-15) X->q = normalized(q);
 }
 
@@ -51,7 +52,7 @@ void check_solver(const SolverDef& s) {
   need(s.sleep_speed, 0, 10, "solver", "sleep_speed");
   need(s.sleep_spin, 0, 100, "solver", "sleep_spin");
   if (s.lanes != 0 && s.lanes != 1 && s.lanes != 4 && s.lanes != 8 && s.lanes != 16)
-    fail(Code::kRange, "solver: lanes: %d is none of 0, 1, 4, 8, 16", s.lanes);
+    fail(Code::kRange, "solver: lanes: %d is not one of 0, 1, 4, 8, 16", s.lanes);
 }
 
 void check_inertia(const Inertia& inertia, bool may_be_empty, const char* owner) {
@@ -108,12 +109,12 @@ void check_joint(JointDef* joint, int32_t self, int32_t num_links) {
   need(joint->effort, 0, 1e7, name, "effort");
   need(joint->armature, 0, 1e4, name, "armature");
   if (joint->kind == JointKind::kPrismatic && joint->armature != 0)
-    fail(Code::kArgument, "%s: a prismatic joint takes no armature", name);
+    fail(Code::kArgument, "%s: a prismatic joint cannot have an armature", name);
   need(joint->friction, 0, 1e4, name, "friction");
   need(joint->slack, 0, 1e4, name, "slack");
   need(joint->ratio, -1e3, 1e3, name, "ratio");
   if (joint->coupled_to < -1 || joint->coupled_to >= num_links || joint->coupled_to == self)
-    fail(Code::kArgument, "%s: coupled_to %d is no other link", name, joint->coupled_to);
+    fail(Code::kArgument, "%s: coupled_to %d is not another link", name, joint->coupled_to);
 }
 
 void check_articulation(ArticulationDef* a, int32_t num_materials) {
@@ -125,7 +126,7 @@ void check_articulation(ArticulationDef* a, int32_t num_materials) {
   for (int32_t i = 0; i < num_links; ++i) {
     LinkDef& link = a->links[static_cast<size_t>(i)];
     if (link.parent < -1 || link.parent >= i)
-      fail(Code::kArgument, "%s: parent %d does not stand before link %d", link.name.text, link.parent, i);
+      fail(Code::kArgument, "%s: parent %d does not come before link %d", link.name.text, link.parent, i);
     check_pose(&link.X_PL, link.name.text);
     check_inertia(link.inertia, true, link.name.text);
     check_joint(&link.joint, i, num_links);
@@ -133,8 +134,7 @@ void check_articulation(ArticulationDef* a, int32_t num_materials) {
   for (const LinkDef& link : a->links)
     if (const int32_t other = link.joint.coupled_to;
         other >= 0 && a->links[static_cast<size_t>(other)].joint.coupled_to >= 0)
-      fail(Code::kArgument, "%s: coupled_to %d is a joint that is coupled itself", link.joint.name.text,
-           other);
+      fail(Code::kArgument, "%s: coupled_to %d is itself a coupled joint", link.joint.name.text, other);
   for (ArticulationShape& s : a->shapes) {
     if (s.link < -1 || s.link >= num_links)
       fail(Code::kArgument, "%s: link %d does not exist", s.shape.name.text, s.link);
@@ -143,7 +143,7 @@ void check_articulation(ArticulationDef* a, int32_t num_materials) {
   const auto num_shapes = static_cast<int32_t>(a->shapes.size());
   for (const auto& [x, y] : a->self_pairs)
     if (x < 0 || y < 0 || x >= num_shapes || y >= num_shapes || x == y)
-      fail(Code::kArgument, "%s: self pair (%d, %d) names no two shapes", name, x, y);
+      fail(Code::kArgument, "%s: self pair (%d, %d) does not name two shapes", name, x, y);
 }
 
 void check_body(BodyDef* body, int32_t num_materials) {
@@ -151,7 +151,7 @@ void check_body(BodyDef* body, int32_t num_materials) {
   check_pose(&body->X_WB, name);
   check_inertia(body->inertia, false, name);
   if (norm(body->inertia.com) > 1e-12)
-    fail(Code::kArgument, "%s: the centre of mass is not the origin", name);
+    fail(Code::kArgument, "%s: the centre of mass is not at the origin", name);
   need(body->angular_damping, 0, 1e6, name, "angular_damping");
   need(body->linear_damping, 0, 1e6, name, "linear_damping");
   for (ShapeDef& shape : body->shapes) check_shape(&shape, num_materials, true);
@@ -166,13 +166,13 @@ void check(SceneDef* def) {
       need(def->friction[i][j].mu, 0, 1e3, "friction", "mu");
       if (def->friction[i][j].mu != def->friction[j][i].mu ||
           def->friction[i][j].passes != def->friction[j][i].passes)
-        fail(Code::kArgument, "friction: materials %d and %d differ by order", i, j);
+        fail(Code::kArgument, "friction: the values of materials %d and %d depend on their order", i, j);
       check_law(def->laws[i][j]);
       if (!(def->laws[i][j] == def->laws[j][i]))
-        fail(Code::kArgument, "contact law: materials %d and %d differ by order", i, j);
+        fail(Code::kArgument, "contact law: the laws of materials %d and %d depend on their order", i, j);
     }
   if (def->articulations.empty() && def->bodies.empty())
-    fail(Code::kArgument, "scene: nothing in it can move");
+    fail(Code::kArgument, "scene: it has nothing that can move");
   for (ArticulationDef& a : def->articulations) check_articulation(&a, def->num_materials);
   for (BodyDef& body : def->bodies) check_body(&body, def->num_materials);
   for (ShapeDef& shape : def->statics) check_shape(&shape, def->num_materials, false);

@@ -43,9 +43,9 @@ OdeWorld::OdeWorld(const Scene& scene, Arena& arena, OdeWorld* partner) : World(
   num_forces_ = static_cast<int32_t>(links + scene.def.articulations.size() + bodies);
   forces_ = arena.make<Force>(static_cast<size_t>(num_forces_));
   if (scene.def.adjustable)
-    fail(Code::kUnsupported, "adjustable: engine ode takes the scene's constants alone");
+    fail(Code::kUnsupported, "adjustable: engine ode does not support scenes whose dynamics can be changed");
   if (scene.def.solver.iterations > kMaxOdeIterations)
-    fail(Code::kRange, "iterations: engine ode takes at most %d, not %d", kMaxOdeIterations,
+    fail(Code::kRange, "iterations: engine ode takes at most %d, but %d were set", kMaxOdeIterations,
          scene.def.solver.iterations);
   if (arena.measuring()) return;
   blocks_ = partner ? partner->blocks_ : std::make_shared<OdeBlocks>();
@@ -88,7 +88,7 @@ void OdeWorld::make_world(const OdeWorld* partner) {
                                                 free_working_memory};
   if (!dWorldUseSharedWorkingMemory(ode_, partner ? partner->ode_ : nullptr) ||
       !dWorldSetStepMemoryReservationPolicy(ode_, &reserve) || !dWorldSetStepMemoryManager(ode_, &memory))
-    fail(Code::kMemory, "ode: no memory for a world");
+    fail(Code::kMemory, "ode: there is not enough memory for a world");
   const Vec3& g = scene_->def.gravity;
   dWorldSetGravity(ode_, g.x, g.y, g.z);
   dWorldSetERP(ode_, solver.erp);
@@ -200,7 +200,7 @@ void OdeWorld::make_forces() {
 void OdeWorld::make_threading() {
   const OdeScope scope(blocks_.get(), this);
   threading_ = dThreadingAllocateSelfThreadedImplementation();
-  if (!threading_) fail(Code::kMemory, "ode: no memory for a world");
+  if (!threading_) fail(Code::kMemory, "ode: there is not enough memory for a world");
   dWorldSetStepThreadingImplementation(ode_, dThreadingImplementationGetFunctions(threading_), threading_);
 }
 
@@ -303,7 +303,7 @@ void OdeWorld::solve() {
   const SolverDef& solver = scene_->def.solver;
   in_solver_ = true;
   if (!(solver.exact ? dWorldStep(ode_, solver.h) : dWorldQuickStep(ode_, solver.h)))
-    fail(Code::kMemory, "ode: no memory for a step");
+    fail(Code::kMemory, "ode: there is not enough memory for a step");
   in_solver_ = false;
 }
 
@@ -515,7 +515,7 @@ void OdeWorld::save(Writer& out) const {
 
 void OdeWorld::check(Reader& in) const {
   if (in.value<int32_t>() != scene_->num_links || in.value<int32_t>() != scene_->num_bodies)
-    fail(Code::kFormat, "world state: it is of another scene");
+    fail(Code::kFormat, "world state: it belongs to another scene");
   bool good = sound_rows(in, *scene_);
   int32_t count = scene_->num_bodies;
   for (int32_t a = 0; a < static_cast<int32_t>(scene_->def.articulations.size()); ++a)

@@ -58,7 +58,7 @@ void on_message(int number, const char* text, va_list args) {
 }
 
 [[noreturn]] void refuse(size_t bytes) {
-  fail(Code::kMemory, "ode: out of memory: %zu bytes were refused", bytes);
+  fail(Code::kMemory, "ode: out of memory: %zu bytes could not be allocated", bytes);
 }
 
 void give_back(void* block, size_t bytes) {
@@ -112,7 +112,8 @@ void put_back_handlers() {
 void initialise() {
   const OdeScope scope;
   if (!dCheckConfiguration("ODE_double_precision"))
-    fail(Code::kVersion, "ode: the library found at run time is single precision, double is needed");
+    fail(Code::kVersion,
+         "ode: the library found at run time has single precision, but double precision is needed");
   if (!dInitODE2(0)) fail(Code::kPhysics, "ode: initialisation failed");
   g_initialised = true;
 }

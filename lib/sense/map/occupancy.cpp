@@ -153,13 +153,13 @@ void Occupancy::end_inserts() {
 }
 
 uint64_t Occupancy::insert(const Vec3& origin, const float* points, size_t count) {
-  if (set_.capacity() == 0) fail(Code::kState, "insert: the map has ended its inserts");
+  if (set_.capacity() == 0) fail(Code::kState, "insert: the map no longer takes inserts");
   const VoxelLattice lattice(tree_->getResolution());
   VoxelKey key;
   if (!finite(origin)) fail(Code::kArgument, "origin is not finite");
   if (!lattice.key(origin, &key))
-    fail(Code::kRange, "origin: (%g, %g, %g) lies outside the lattice of %d voxels a side", origin.x,
-         origin.y, origin.z, kKeyCount);
+    fail(Code::kRange, "origin: (%g, %g, %g) lies outside the map, which has %d voxels on each side",
+         origin.x, origin.y, origin.z, kKeyCount);
   const uint64_t before = dropped_;
   const auto point = [&](size_t i) { return Vec3{points[3 * i], points[3 * i + 1], points[3 * i + 2]}; };
   const auto near = [&](const Vec3& p) { return max_range_ == 0 || norm(p - origin) <= max_range_; };
@@ -360,12 +360,13 @@ bool Occupancy::cast(const Vec3& from, const Vec3& direction, double range, bool
   const VoxelLattice lattice(tree_->getResolution());
   const double length = norm(direction);
   if (!finite(from) || !(length > 0) || !std::isfinite(length))
-    fail(Code::kArgument, "direction: of length %g", length);
+    fail(Code::kArgument, "direction: its length is %g", length);
   if (!(range > 0)) fail(Code::kRange, "range: %g is not positive", range);
   const double bound = VoxelLattice::kMiddle * lattice.size;
   const Vec3 unit = (1 / length) * direction;
   for (int i = 0; i < 3; ++i) {  // up to the border of the lattice
-    if (std::abs(from[i]) >= bound) fail(Code::kRange, "from: outside the lattice of %g m", bound);
+    if (std::abs(from[i]) >= bound)
+      fail(Code::kRange, "from: it lies outside the map, which reaches %g m", bound);
     if (unit[i] != 0)
       range = std::min(range, (bound - (unit[i] > 0 ? from[i] : -from[i])) / std::abs(unit[i]) * (1 - 1e-12));
   }

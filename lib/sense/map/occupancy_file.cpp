@@ -71,7 +71,7 @@ class Source {
   }
   template <class T>
   T value() {
-    if (static_cast<size_t>(end_ - at_) < sizeof(T)) bad("it ends within the tree");
+    if (static_cast<size_t>(end_ - at_) < sizeof(T)) bad("it ends in the middle of the tree");
     T v;
     std::memcpy(&v, at_, sizeof v);
     at_ += sizeof v;
@@ -122,10 +122,10 @@ Header read_header(Source& in) {
         bad("it holds another kind of tree than OcTree");
       id = true;
     } else if (starts(begin, end, "size ")) {
-      h.nodes = number<uint64_t>(begin + 5, end, "size is no number");
+      h.nodes = number<uint64_t>(begin + 5, end, "size is not a number");
       size = true;
     } else if (starts(begin, end, "res ")) {
-      h.resolution = number<double>(begin + 4, end, "res is no number");
+      h.resolution = number<double>(begin + 4, end, "res is not a number");
       if (!(h.resolution >= 0.001 && h.resolution <= 10)) bad("res is out of range");
     }
   }
@@ -209,8 +209,8 @@ void Occupancy::read(const void* bytes, size_t size) {
       build.binary(tree->make_root(), 0);
     else if (header.nodes > 0)
       build.full(tree->make_root(), 0);
-    if (!in.ended()) bad("bytes are left over");
-    if (tree->size() != header.nodes) bad("it has another number of nodes than it says");
+    if (!in.ended()) bad("it has extra bytes at the end");
+    if (tree->size() != header.nodes) bad("its number of nodes differs from its header");
   } catch (...) {
     delete tree;
     throw;

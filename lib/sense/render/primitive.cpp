@@ -29,7 +29,7 @@ void check_size(const RenderShape& shape, int32_t index) {
       used = 2;
       break;
     case ShapeKind::kHull:
-      if (!shape.hull) fail(Code::kArgument, "shapes[%d]: a hull without its points", index);
+      if (!shape.hull) fail(Code::kArgument, "shapes[%d]: a hull needs points", index);
       [[fallthrough]];
     case ShapeKind::kBox:
     case ShapeKind::kEllipsoid:

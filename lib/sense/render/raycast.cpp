@@ -15,7 +15,7 @@ void check(const RenderShape* shapes, int32_t num_shapes, const RenderOptions& o
            const RaycastScratch& scratch) {
   if (num_shapes < 0 || num_shapes > scratch.max_shapes)
     fail(Code::kRange, "num_shapes: %d is outside [0, %d]", num_shapes, scratch.max_shapes);
-  if (num_shapes > 0 && !shapes) fail(Code::kArgument, "shapes: null with num_shapes %d", num_shapes);
+  if (num_shapes > 0 && !shapes) fail(Code::kArgument, "shapes is NULL with num_shapes %d", num_shapes);
   if (options.samples_per_side < 1 || options.samples_per_side > kMaxSamplesPerSide)
     fail(Code::kRange, "samples_per_side: %d is outside [1, %d]", options.samples_per_side,
          kMaxSamplesPerSide);
