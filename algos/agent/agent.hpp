@@ -5,7 +5,8 @@
 //   act, record  `horizon` times: the collector samples a ~ pi_old(. | s) and keeps what followed
 //   update       advantages and targets (collector, gae)
 //                begin_epoch  the algorithm's multipliers, penalties or barriers, from the episodes' costs
-//                             J_c against their limits; leaves in the rollout what the actor climbs
+//                             J_c against their limits; writes the combined advantage, which the
+//                             actor's loss uses, into the rollout
 //                a trust region's step of the policy (begin_step, step_on)
 //                passes over shuffled minibatches (learner), which move the critics and, but after such a
 //                step, the policy (policy_loss)
@@ -14,19 +15,20 @@
 // differently: the loss of the policy (policy_loss), what happens before the policy step (begin_epoch), or the
 // step itself.
 //
-// Whose arrays: the agent's one arena holds them all, cut at creation by carve, so act, record and update
-// allocate nothing. Each part owns what its own carve cut and lends it by pointer:
+// Memory: one arena of the agent holds all arrays. It is allocated at creation, and each part takes its arrays from
+// it in carve(), so act, record and update allocate nothing. The part that took an array owns it; others get
+// pointers:
 //   Networks      parameters and Adam's moments
 //   BatchWorkers  scratch of the chunks in flight: activations, a gradient each
-//   Collector     the Rollout, normalisers, noise, episodes; only it writes them, but for gain, linear (the
-//                 algorithm) and order (the passes)
+//   Collector     the Rollout, normalisers, noise, episodes; only it writes them, except gain and linear (the
+//                 clipped and the unclipped advantage, by the algorithm) and order (by the passes)
 //   Learner       the gradient that a step follows
 //   Imitation     the demonstration that regularises the policy: a recording's rows, copied when it is set,
 //                 outside of the arena
 //   TrustRegion, rules of an algorithm: what they carve or hold themselves
-// A part begins in four steps: carve (arrays, twice: to measure and for good), open (pointers to other parts,
-// options that are fixed), opened (an algorithm's own parts), read_live (options that may change; again after
-// every change).
+// A part is made in four steps: carve (take arrays from the arena; called twice, first to measure), open (bind
+// pointers to other parts, read the options that are fixed), opened (the same for an algorithm's own parts),
+// read_live (read the options that may change; called again after every change).
 //
 // Work on a minibatch is cut into chunks of fixed size that are reduced in a fixed order, so any number of
 // threads gives the same bytes; and, over blocks of worlds, any number of processes (ranks.hpp).

@@ -10,7 +10,7 @@
 namespace rdm::import {
 namespace {
 
-// All kinds of actuators, and both of tendons, share one default.
+// The default that a tag takes: all kinds of actuators share one, and so do both kinds of tendons.
 std::string kind_of_default(const std::string& tag) {
   for (const char* other :
        {"geom", "joint", "mesh", "site", "tendon", "equality", "material", "camera", "light", "pair"})
@@ -57,7 +57,7 @@ const std::string* MjcfReader::value(const Element& e, const char* key, const st
     if (of == at->values.end()) continue;
     const auto found = of->second.find(name);
     if (found == of->second.end()) continue;
-    // one long text of a class may be read for every element
+    // a long text of a class may be parsed for every element, so it is charged by its length
     out->budget.spend(Cost::kSteps, found->second->value.size() / 16);
     found->second->read = true;
     return &found->second->value;
@@ -93,7 +93,7 @@ bool MjcfReader::limited(const Element& e, const char* key, const std::string* l
 // ---- poses ----
 Turn MjcfReader::turn_at(const Element& e, const std::string& c) const {
   static constexpr const char* kWays[] = {"quat", "axisangle", "euler", "xyaxes", "zaxis"};
-  // One way alone says it: the element's own goes before those of its class.
+  // A rotation has one of five forms; a form on the element itself overrides any form of its class.
   const bool own = std::any_of(std::begin(kWays), std::end(kWays), [&](const char* w) { return e.find(w); });
   const auto said = [&](const char* key) { return own ? e.get(key) : value(e, key, c); };
   if (const auto* t = said("quat")) {
@@ -304,7 +304,7 @@ void MjcfReader::read() {
   read_actuators();
   read_excluded();
   read_keyframe();
-  if (!options.root.empty())  // the other bodies are not news one by one
+  if (!options.root.empty())  // bodies outside of config.root are not listed one by one as dropped
     for (const Element* w : mujoco.all("worldbody")) mark(*w);
 }
 

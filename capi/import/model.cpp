@@ -28,7 +28,8 @@ std::string fitting_name(const std::string& name, const char* otherwise) {
   return out;
 }
 
-// A name that is taken gets the next number of its stem: each is tried once, however many are called the same.
+// Makes names unique: a name that is used already gets the next number of its stem. The number is remembered by
+// stem, so many equal names cost no quadratic search.
 class Namer {
  public:
   Namer(Draft* out, const char* what) : out_(out), what_(what) {}
@@ -90,7 +91,7 @@ struct Builder {
               nearest_hint(joint, names).c_str());
   }
 
-  // A chain of followers as one ratio and offset of the last leader.
+  // Couplings with chains resolved: a joint that follows a follower gets the ratio and offset to the last leader.
   std::vector<CouplingIn> resolved() {
     std::map<std::string, const CouplingIn*> by;
     for (const CouplingIn& c : in.couplings) {
@@ -117,7 +118,7 @@ struct Builder {
     return all;
   }
 
-  // Before anything is compared with anything.
+  // First of all, because later steps compare all joints with all others.
   void count_joints() const {
     size_t count = 0;
     for (const BodyIn& b : in.bodies)
@@ -299,7 +300,7 @@ struct Builder {
       const JointIn& j = *joints[r];
       rdm_robot_link& l = out->links[r];
       l.effort = j.effort;
-      if (!(l.effort > 0))  // what leads it pulls it
+      if (!(l.effort > 0))  // the joint that it follows moves it, so its effort counts
         for (const rdm_robot_coupling& c : out->couplings)
           if (c.link == static_cast<int32_t>(r) && joints[static_cast<size_t>(c.other)]->effort > 0) {
             l.effort = joints[static_cast<size_t>(c.other)]->effort;
@@ -333,7 +334,7 @@ struct Builder {
     }
   }
 
-  // An actuator's range that is not the joint's.
+  // An actuator with a narrower range than its joint: a curve maps commands of -1 to 1 onto that range.
   void add_curve(const JointIn& j, int32_t row) {
     const rdm_robot_link& l = out->links[static_cast<size_t>(row)];
     if (!j.has_command || follows(row)) return;

@@ -12,8 +12,8 @@
 
 namespace rdm::import {
 
-// Files say by it that a joint stays where it is; what is above the gains of a joint becomes the largest of
-// these, with a note.
+// Damping above this is how files say that a joint is fixed. Between the largest allowed gain and this, damping is
+// reduced to that gain, with a note.
 inline constexpr double kMostDamping = 1e30;
 
 struct JointIn {

@@ -1,9 +1,9 @@
-// What no file of links and joints says: which of them are palm, fingers and tips, where an arm ends.
+// Infers what URDF and MJCF do not say: which links are palm, fingers and tips, and where an arm ends.
 //
-// Rows without a child are ends. One end, or a stem of four joints and more before the first fork: an arm,
-// which ends with its stem. Else a hand: the palm is where all chains part; each end is a finger's tip; a
-// finger begins behind the last fork above its tip. The thumb is called so, or is the finger that stands most
-// apart.
+// Rows without a child are ends; the stem is the chain that all of them hang on. One end, or a stem of at least four
+// joints, makes an arm, whose flange is the last link of the stem. Anything else is a hand: the palm is the link at
+// which all chains part, each end is a fingertip, and a finger begins after the last fork above its tip. The thumb
+// is the finger of that name, or the one that differs most from the others in place and direction.
 #include <algorithm>
 #include <cctype>
 
@@ -103,7 +103,7 @@ struct Guess {
   };
   std::vector<Finger> fingers;
 
-  // How far the shapes of a link reach along a way, both in its frame; the middle of its shapes.
+  // How far the shapes of a link reach along a direction in its frame; then the centre of its shapes by volume.
   double reach(int32_t row, V3 way) const {
     double most = 0;
     for (const rdm_robot_shape& s : out->shapes)
@@ -127,7 +127,7 @@ struct Guess {
     for (; *text; ++text) out += static_cast<char>(std::tolower(static_cast<unsigned char>(*text)));
     return out;
   }
-  // "index" and the like, of names that say it; "" else.
+  // The name of a finger ("index", ...) that at least half of its links and joints have in their names; "": none.
   std::string said(int32_t first, int32_t tip) const {
     static constexpr const char* kWords[][2] = {{"thumb", "thumb"},   {"index", "index"}, {"fore", "index"},
                                                 {"middle", "middle"}, {"ring", "ring"},   {"pinky", "little"},
@@ -219,7 +219,8 @@ struct Guess {
     return found;
   }
 
-  // A frame called a tip that is part of the link; else where its shapes end, away from the joint.
+  // The point of a fingertip in its link: a frame whose name has "tip", else the end of its shapes away from the
+  // joint.
   V3 guessed_tip(int32_t row) const {
     for (const auto& [word, p] : places)
       if (p.row == row && norm(p.X.p) > 1e-6 && lowered(word.c_str()).find("tip") != std::string::npos) {
@@ -262,7 +263,7 @@ struct Guess {
     }
   }
 
-  // The way joint `row` moves a point when it grows from 0, in the root frame.
+  // The velocity of a point per unit of joint `row`, with all joints at 0, in the root frame.
   V3 motion(int32_t row, V3 point) const {
     const Pose& X = poses[static_cast<size_t>(row)];
     const V3 axis = X.q * vec(out->links[static_cast<size_t>(row)].axis);
@@ -278,7 +279,7 @@ struct Guess {
   void give_hand() {
     rdm_robot_def& d = out->def;
     find_fingers();
-    // Fingers' way, the line that they stand in, and the way that they bend.
+    // The mean direction of the fingers (way), the line of their roots (across), and the side they bend to (normal).
     V3 way, first_root, last_root, centre;
     int count = 0;
     const bool gripper = fingers.size() < 4;
@@ -314,7 +315,7 @@ struct Guess {
     }
     const Pose palm = pose_of(poses, d.palm_link);
     const V3 n = back(palm.q) * normal, z = back(palm.q) * way;
-    // The surface: from the middle of palm and finger roots outwards.
+    // The palm's surface: from the middle between palm and finger roots outwards, at most 3 cm.
     V3 p = 0.5 * (middle(d.palm_link) + back(palm) * centre);
     double above = dot(p, n);
     for (const rdm_robot_shape& s : out->shapes)
@@ -326,7 +327,7 @@ struct Guess {
     put(z, d.palm_fingers);
     put(p + (gripper ? 0.6 * length : 0.03) * n + (gripper ? 0.0 : 0.25 * length) * z, d.hold_p);
     give_mount(gripper ? normal : way);
-    // The plane that is the most across the fingers, of the root's.
+    // A left hand is mirrored along the axis of the root that is nearest to the line across the fingers.
     const V3 a = gripper ? way : across;
     d.mirror = std::abs(a.x) >= std::abs(a.y) && std::abs(a.x) >= std::abs(a.z) ? 0
                : std::abs(a.y) >= std::abs(a.z)                                 ? 1
@@ -399,7 +400,8 @@ struct Guess {
     }
   }
 
-  // Bent half way, and straight with the thumb across: what tasks begin with.
+  // Poses that tasks start from. closed: each joint half way to the end that brings the tip to the palm; folded: only
+  // the thumb bent, across the palm.
   void give_poses(V3 normal) {
     const auto home = home_of(*out);
     out->folded = home;

@@ -1,4 +1,4 @@
-// Terms are evaluated as they stand in the file; what each is, and the curves, is told in task_program.hpp.
+// Evaluates the terms in the order of the file; task_program.hpp says what each term and each curve is.
 #include "task_program.hpp"
 
 #include <algorithm>
@@ -62,7 +62,7 @@ struct Scene {  // what all terms of one call look at
   const Program& program;
   const State& state;
   const rdm_world* world;
-  rdm_world* open;  // NULL where nothing changes
+  rdm_world* open;  // the same where the world may be changed; NULL in observe
   rdm_joints joints{};
 };
 
@@ -71,7 +71,7 @@ rdm_result open_scene(Scene* s) {
   return rdm_world_get_joints(s->world, &s->joints);
 }
 
-// *raw: what a cost measures, where that is more than the value.
+// *raw: the magnitude behind a cost, set only where it is more than the value (of a touch: its force).
 rdm_result value_of(const Scene& s, const Term& t, double* value, double* raw) {
   rdm_motion a, b;
   const Joint* joints = s.program.joints + t.first;

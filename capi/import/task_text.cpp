@@ -1,7 +1,7 @@
-// The .task file: TOML, one table for each row of rdm_task_def and of a scene's parts, and lists of terms in
-// the place of a task's functions. Read whole when it is registered (text_register); `build` makes the scene (text_scene), its
-// players (text_players) and the program of terms (text_terms, task_program.hpp) anew for each pool, since numbers may be
-// options of it.
+// The .task file: TOML with one table for each row of rdm_task_def and for each part of a scene, and lists of terms
+// that replace a task's functions (reward, costs, observations). The file is parsed once, when the task is registered
+// (text_register). `build` makes the scene (text_scene), its robots (text_players) and the program of terms
+// (text_terms, task_program.hpp) again for each pool, because numbers in the file may be options of the pool.
 #include <algorithm>
 #include <memory>
 
@@ -36,7 +36,7 @@ void release(void* user) {
   delete static_cast<TextTask*>(user);
 }
 
-// The task's own text, without who calls it.
+// The last error without the prefix that the library puts before messages of a task's build.
 std::string inner_text(const std::string& name) {
   std::string text = rdm_last_error();
   const std::string head = "task " + name + ": build: ";
@@ -59,7 +59,7 @@ rdm_result try_world(const char* name) {
   return r;
 }
 
-// What is wrong with the task, in the file's words and at the file's line.
+// Turns an error about a member of rdm_task_def into one about the line of the file that gave the member.
 [[noreturn]] void refuse_def(const TextTask& task, rdm_result r) {
   const std::string text = rdm_last_error();
   for (const TextTask::Row& row : task.rows) {

@@ -1,4 +1,4 @@
-// What of a .task file is there once, when the task is registered: the rows of its rdm_task_def.
+// The part of a .task file that is read once, when the task is registered: the rows of its rdm_task_def.
 #pragma once
 #include "toml_text.hpp"
 

@@ -14,8 +14,8 @@ constexpr auto kRows = row<&LevelOptions::level>(basic(integer_option(
     "level", 0, 0, 3,
     "drawn dynamics: masses, gains, efforts, damping and friction vary by 0, 10, 20 or 30 % at each reset")));
 constexpr double kSpread[] = {0, 0.1, 0.2, 0.3};
-// What is drawn is a factor on the scene's own number, which is the middle of the range that was given; of a
-// level, a factor about 1.
+// The range of the factor that is drawn. The scene is built with the middle of the range that was given, so the
+// factor is relative to it; for an option drawn by level it is 1 plus or minus the level's spread.
 OptionRange factor_of(const Options& o, const char* key) {
   if (!o.given(key)) {
     const double spread = o.spec_of(key)->levelled && kRows.known_to(o) ? kSpread[kRows.read(o).level] : 0;
@@ -51,14 +51,14 @@ void DynamicsDraws::add(const DrawnOption& option, Drawn what, int32_t first, in
 }
 
 void DynamicsDraws::apply(World& world, Stream& stream) const {
-  if (rows_.empty()) return;  // and takes nothing from the stream
+  if (rows_.empty()) return;  // without using the stream, so that other draws stay the same
   Dynamics& d = world.edit_dynamics();
   d.reset();                    // factors of the last episode do not pile up
   constexpr size_t kMost = 64;  // factors kept at a time: rows of one option stand near each other
   double factors[kMost];
   for (size_t begin = 0; begin < options_.size(); begin += kMost) {
     const size_t end = std::min(begin + kMost, options_.size());
-    // in the order of the options, however rows stand: the draws of a seed stay when a row is added
+    // one draw per option, in the order of options and not of rows: a new row does not change the draws of a seed
     for (size_t i = begin; i < end; ++i) factors[i - begin] = options_[i].draw(stream);
     for (const Row& row : rows_) {
       const auto option = static_cast<size_t>(row.option);

@@ -50,7 +50,8 @@ struct Slot {
   Stream start;     // whether and where in Starts an episode begins
   uint32_t status;  // of the episode that runs, or has ended and waits for its reset: OR over its steps
   int32_t taken;    // control steps of the last step
-  uint32_t course;  // moves whenever the world becomes what no step has made of it
+  uint32_t
+      course;  // changes whenever a reset or a new state breaks the sequence of steps (a shield's plan ends)
   double
       magnitude[kMaxTaskCosts];  // with option action_repeat: sums over these of cost_raw where it is above 0
   bool goes_on;                  // a further control step of this step would be of the same episode
@@ -63,8 +64,8 @@ inline constexpr int32_t kFewWorlds = 4;
 // finite as floats.
 inline constexpr double kMaxVerdict = 1e20, kMaxSum = 1e30;
 
-// What a worker needs to step worlds: its own run of them first, then pieces of those of others, in the
-// memory of its first world.
+// What a worker needs to step worlds. It steps its own range of worlds first, then takes pieces of other workers'
+// ranges; it works in the memory of the first world of its range.
 struct alignas(Arena::kAlign) Block {
   float* action;  // [action_dim] clipped
   SenseScratch sense;

@@ -1,9 +1,9 @@
-// Which of several predicted courses is the better one, and what a method makes of them.
+// Which of several simulated trajectories (courses) is the better one, and how a method combines them.
 //
-// Feasible first: a course whose costs all stay within their budgets comes before every one that exceeds any;
-// within they are ranked by return, beyond by what they exceed, summed over the limited costs (of one cost:
-// by the cost). With a multiplier it is the return less multiplier times the sum of the limited costs alone.
-// A course that diverged comes last.
+// Rule feasible: a trajectory whose costs all stay within their budgets comes before every one that exceeds any.
+// Within the budgets they are ranked by return, beyond them by the excess, summed over the limited costs. Rule
+// multiplier: by the return minus the multiplier times the sum of the limited costs. A trajectory that diverged
+// (lost) comes last.
 #pragma once
 #include <cstdint>
 
@@ -13,7 +13,7 @@ namespace rdm {
 
 enum class CostRule : int32_t { kFeasible = 0, kMultiplier = 1, kIgnore = 2 };
 
-// What a rollout came to.
+// The outcome of a simulated trajectory.
 struct Course {
   double ret = 0;                   // discounted sum of rewards, with the terminal value
   double cost[kMaxTaskCosts] = {};  // sums, of every column
@@ -27,7 +27,7 @@ struct CourseRule {
   double budget[kMaxTaskCosts] = {};  // [num_costs] that is left, 0 or more; < 0: the cost has no limit
 };
 
-// A lower group comes first, within one the higher score, then the higher return.
+// Rank key of a trajectory: a lower group comes first; within a group the higher score, then the higher return.
 enum class CourseGroup : int32_t { kWithin = 0, kBeyond = 1, kLost = 2 };
 struct Standing {
   CourseGroup group = CourseGroup::kWithin;

@@ -2,8 +2,8 @@
 // contact_solver.inl, whose sums they share. Part of stepper_v*.cpp.
 //
 // A point has up to six rows: its normal and tangents n, t, u, the turning about n, and that about t and u,
-// each stored half-solved. The block A = J M^-1 J^T of its own rows is kept, so that an update reads the sums
-// once, passes kPasses times over its unknowns against what is missing to the wanted velocities
+// each stored as z = Z J^T (contact_solver.inl). The block A = J M^-1 J^T of its own rows is kept, so that an
+// update reads the sums once, passes kPasses times over its unknowns against what is missing to the wanted velocities
 //   e = b - z . sum,   e <- e - A d for every change d of the impulses,
 // and writes the whole change once.
 //   cone      n <- max(0, n + (e_n - s n) / (A_nn + s)), then (t, u) within mu n, the turning about n within

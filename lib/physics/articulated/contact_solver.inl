@@ -36,7 +36,7 @@
 // bodies; fewer once the squared change of
 // a sweep is small against the squared impulses.
 //
-// Said, not cured (kStatusUnconverged): a normal whose velocity was wrong by more than kUnsolvedSpeed when
+// Reported, not corrected (kStatusUnconverged): a normal whose velocity was wrong by more than kUnsolvedSpeed when
 // the last sweep came to it, as in tall stacks that get heavier upwards (free bodies alone: direct_contacts.inl
 // solves them); and a point that gives way although it is pushed out as fast as points are, where the option
 // contact_max_speed is below kMostYield.
@@ -58,12 +58,12 @@ constexpr int32_t kStackFactor = 4;
 // Square of the relative change at which the sweeps end early, and that of a stack: more than kStack points.
 constexpr double kTolerance = 1e-9, kStackTolerance = 1e-8;
 constexpr int32_t kStack = 64;
-// Sweeps for two levels of a pile, and how many of its last are not accelerated: what a step along the
-// direction overshoots by is to be taken back.
+// Sweeps for two levels of a pile. Its last kPlainSweeps are not accelerated, so that they correct what a step
+// along the conjugate direction overshoots.
 constexpr int32_t kSweepsPerTwoLevels = 7;
 constexpr int32_t kPlainSweeps = 3;
-// Sweeps for each point between two free bodies. With half as many a stack of five boxes rattles by 4 to 26 mm/s:
-// what the sweeps leave over leans it to and fro.
+// Sweeps for each point between two free bodies. With half as many, the error that remains makes a stack of five
+// boxes sway at 4 to 26 mm/s.
 constexpr int32_t kSweepsOfStacked = 2;
 // m/s, of a point along its normal. The ten hand tasks with random, held and trained actions stay below 0.7;
 // a cube of 1 kg under one of a ton comes to 7.
@@ -154,7 +154,7 @@ struct ContactSolver {
   void warm_start(Point* p, const S* impulse);
   // `wide_alone`: the points outside of lanes are solved.
   void solve(int32_t iterations, bool wide_alone);
-  // What the normal velocity of a point was wrong by when the last sweep came to it, m/s: the most of all.
+  // The largest error of a point's normal velocity when the last sweep came to it, m/s.
   S residual() const;
 
  private:
@@ -391,7 +391,7 @@ template <class S>
 void ContactSolver<S>::solve(int32_t iterations, bool wide_alone) {
   alone = wide_alone;
   S impulse_square = 0;  // sum of squared impulses
-  // weight travels from body to body, one sweep each: stacks get more. A box stands on four points.
+  // weight is passed on from body to body, one per sweep, so stacks need more; a box stands on four points
   const int32_t all = count + wide.count + laws.count;
   const S tolerance = all > kStack ? S(kStackTolerance) : S(kTolerance);
   const bool pile = wide.count > 0;
@@ -440,7 +440,7 @@ void ContactSolver<S>::solve(int32_t iterations, bool wide_alone) {
   }
 }
 
-// An impulse changes by what the velocity is wrong by, times inv_n.
+// A sweep changes an impulse by inv_n times the error of the velocity, so the error is the change over inv_n.
 template <class S>
 S ContactSolver<S>::residual() const {
   S most = wide.count > 0 ? wide.residual() : S(0);

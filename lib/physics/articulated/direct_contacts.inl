@@ -6,7 +6,7 @@
 // begin. The sweeps then find what this did not see: a robot that touches one of the bodies, and what else that
 // robot touches; where there is nothing of the kind they are left out.
 //
-// Equations, in the half-solved coordinates of contact_solver.inl, in which the mass matrix is 1. Unknown is
+// Equations, in the coordinates Z J^T of contact_solver.inl, in which the mass matrix is the identity. Unknown is
 // y = sum of z lambda over the points; u = z y - b is what a point's velocity is off by, s its softness:
 //   minimise  |y|^2 / 2 + sum of psi(u),   lambda = -d psi / du,
 //   psi(u) = max over |(t, u)| <= mu n of  -lambda . u - s (n^2 + |(t, u)|^2 / mu^2) / 2

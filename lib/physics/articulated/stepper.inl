@@ -17,9 +17,9 @@
 // Bodies that sleep (sleep.hpp) take no part in any of it.
 //
 // Contacts and active sets depend on each other: an impulse may push a joint against its limit or a drive
-// past its bound, which changes M and with it every contact. They are solved in turn; a world is open until
-// its sets agree with its contacts' outcome. Rounds 0 and 1 change all contradictions, round 2 the first of
-// each robot alone, then the damped set is frozen and the contacts are solved once more.
+// past its bound, which changes M and with it every contact. They are solved in turn; a world is open (not yet
+// done) until its sets agree with its contacts' outcome. Rounds 0 and 1 change all contradictions, round 2 only
+// the first of each robot, then the damped set is frozen and the contacts are solved once more.
 //
 // Numbers. Joint coordinates, bases and bodies are doubles in a world (WorldState); a batch works in S,
 // floats but for the reference, on places relative to each robot's base. A base moves in double, and contact
@@ -101,9 +101,9 @@ class BatchStepper final : public ContactStepper<typename L::Scalar> {
     int32_t sensor;         // of the link, -1: none
     int32_t first_segment;  // of the body or the member in the contact solver
   };
-  // Of free bodies that hang together by contacts, at the lowest of them.
+  // A set of free bodies that touch each other, stored at the one with the lowest number.
   struct Island {
-    int32_t root, points;  // the lowest body, or one that is nearer to it
+    int32_t root, points;  // union-find: that body, or one on the way to it; number of contact points
     double least, most;    // inverse mass, 1/kg
   };
   struct Lane {
@@ -418,7 +418,8 @@ void BatchStepper<L>::shape_pose(int32_t world, int32_t shape, Vec3* p, Mat3* R)
   for (int r = 0; r < 3; ++r) (*p)[r] += static_cast<double>(L::get(batch->center[k][r], lane));
 }
 
-// Where the substep takes a shape's place at the rates that it begins with, and bodies by their weight.
+// How far the substep moves a shape's place at the velocities that it begins with, of free bodies with gravity's
+// part of the substep.
 template <class L>
 Vec3 BatchStepper<L>::shape_way(int32_t world, int32_t shape) const {
   const Attachment& at = attachments_[shape];
@@ -448,7 +449,7 @@ Vec3 BatchStepper<L>::shape_way(int32_t world, int32_t shape) const {
   return h * (v + cross(spin, arm));
 }
 
-// Bounds on all ways, for the collider: of links each, of bodies each.
+// How far every shape may move in this substep, for the collider's search of contacts to come.
 template <class L>
 void BatchStepper<L>::find_coming(int32_t world) {
   float* ways = collider_->ways();

@@ -64,7 +64,7 @@ struct TreeMember {
   Vector<TreeShape> shapes;
 };
 
-// A coordinate's place in the half-solved vector that contacts act on (contact_solver.inl): slot of a
+// A coordinate's place in the vector `sum` that contacts act on (contact_solver.inl): slot of a
 // segment. Segments are runs of a path without a branch, at most kSegment long: one vector register or two.
 inline constexpr int kSegment = 8;
 struct TreeSlot {

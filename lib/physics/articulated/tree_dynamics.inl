@@ -12,7 +12,7 @@
 //   orientations        the same for quaternions
 //   link_inertias       c and the moments about it in world axes, R I R^T
 //   motion_subspaces    the column of a joint: revolute (z, p_J x z), prismatic (0, z); RBDA 4.4
-//   body_forces         what the momentum of each body, of the last solve, asks of this pose (below)
+//   body_forces         the force that each body's momentum of the last solve needs in this pose (below)
 //   bias_forces         the second pass of RNEA, RBDA 5.3: forces summed from the tips, and of a joint
 //                       bias_i = a_i . n_i + s_i . f_i
 //   composite_inertias  the mass matrix by composite rigid bodies (CRBA, RBDA 6.2): M_ij = S_j . (I_i S_i)
@@ -107,9 +107,9 @@ struct TreeBatch : BaseConstants<typename L::V> {
   LinkWork<V>* work;
   CoordWork<V>* coord;
   V *mass_matrix, *reduced, *factor;  // rows as in Tree::path
-  V *dv, *push;                       // by coordinate: change of the rate; of contacts, half-solved
-  V* feedforward;                     // [num_links]; null: none
-  V* present;  // where the tree looks ahead: rates [num_coords], then angles [num_links]
+  V *dv, *push;    // by coordinate: change of the velocity; Z J^T lambda (contact_solver.inl)
+  V* feedforward;  // [num_links]; null: none
+  V* present;      // where the tree looks ahead: rates [num_coords], then angles [num_links]
   // Shapes: place and half axis (of capsules) in their link's joint frame, and both in world axes from the
   // base's origin.
   V (*shape_p)[3], (*shape_a)[3], (*center)[3], (*axis)[3];
@@ -305,7 +305,7 @@ void shape_poses(TreeBatch<L>& t) {
   }
 }
 
-// Of the shapes' places at the rates that the substep begins with.
+// How far each shape's place moves in the substep at the velocities that it begins with.
 template <class L>
 void shape_ways(TreeBatch<L>& t) {
   using V = typename L::V;
@@ -576,9 +576,9 @@ void composite_inertias(TreeBatch<L>& t) {
   entry(5, 3) = b.J[4], entry(5, 4) = b.J[5], entry(5, 5) = b.J[2];
 }
 
-// kCount entries of a row of D L, from those of M: less what the coordinates below take, the last of them
-// first. The sums stay in registers. The row's last entries take `more` on the diagonal, and its entry of
-// `right`, of the right side, goes the same way.
+// kCount entries of a row of D L: those of M minus the products with the rows of the coordinates below, the last
+// of these first. The sums stay in registers. With the last entries of a row come its diagonal, to which `more`
+// is added, and its entry `right` of the right side, which is reduced in the same loop.
 template <int kCount, class V>
 void reduce_entries(const V* matrix, const V* more, const TreeBelow* below, const TreeBelow* end,
                     const V* factor, const V* reduced, V* out, const V* rights, V* right) {
@@ -604,8 +604,8 @@ void reduce_entries(const V* matrix, const V* more, const TreeBelow* below, cons
   for (int e = 0; e < kCount; ++e) out[e] = sum[e];
 }
 
-// Which rows of the factors are not of the present gains and couplings: those that changed since they were
-// made, and all above them.
+// Which rows of the factors have to be computed again: those whose gain or coupling changed since they were
+// made, and all rows above these on the way to the root.
 template <class L>
 void find_stale_rows(TreeBatch<L>& t, uint8_t* stale) {
   const Tree& tree = *t.tree;
@@ -621,7 +621,7 @@ void find_stale_rows(TreeBatch<L>& t, uint8_t* stale) {
   }
 }
 
-// t.dv[k] takes what the coordinates below it ask for.
+// One step of x <- L^-T x: subtracts from t.dv[k] the part that the coordinates below k have.
 template <class L>
 void reduce_right_side(TreeBatch<L>& t, int k) {
   const Tree& tree = *t.tree;
@@ -636,8 +636,8 @@ void reduce_right_side(TreeBatch<L>& t, int k) {
 }
 
 // The rows of t.mass_matrix with the gains on its diagonal: t.factor gets those of L off the diagonal, inv_d
-// 1 / D. t.dv becomes L^-T t.dv on the way. `kept`: the factors are of this very matrix but for gains and
-// couplings, so that most rows are as they should be.
+// 1 / D. t.dv becomes L^-T t.dv on the way. `kept`: the factors belong to this matrix except for gains and
+// couplings, so that most rows need no work.
 template <class L>
 void factor(TreeBatch<L>& t, bool kept) {
   using V = typename L::V;

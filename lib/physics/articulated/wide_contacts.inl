@@ -9,14 +9,14 @@
 //
 // A point's row along an axis f of its frame (normal and tangents), with arms from the centres of mass:
 //   a: ( sqrt(1/m_a) f,  C_a^-1 R_a^T (arm_a x f))      b: (-sqrt(1/m_b) f, -C_b^-1 R_b^T (arm_b x f))
-// The axes stand in for both linear halves: while the points of a pair are solved, its slip
+// The linear halves need no storage, as they are the axes times sqrt(1/m): while the points of a pair are solved,
+// its slip
 //   s = sqrt(1/m_a) sum_a - sqrt(1/m_b) sum_b  of the linear halves
-// is kept in place of both, an impulse d f changes it by (1/m_a + 1/m_b) d f, and what all of them come to
-// goes back into the sums at the end.
+// replaces both, an impulse d f changes it by (1/m_a + 1/m_b) d f, and the total is added to the sums at the end.
 //
-// One point waits for another, so that what counts is the longest chain of operations and not their number.
-// An update is therefore written as  n <- max(0, (c n + k b_n) - k v_n)  with k = inv_n, c = 1 - k softness,
-// and the tangents' as what they come to for the old n, less the change of n times a constant. The step along
+// Each point has to wait for the one before it, so the time is that of the longest chain of operations, not of
+// their number. An update is therefore written as  n <- max(0, (c n + k b_n) - k v_n)  with k = inv_n and
+// c = 1 - k softness, and the tangents' as their value for the old n, minus the change of n times a constant. The step along
 // the conjugate direction that follows a sweep (contact_solver.inl) is taken at the beginning of the next.
 #pragma once
 #include <algorithm>
@@ -82,8 +82,9 @@ struct WideContacts {
   void add(int32_t first, int32_t n, int32_t a, int32_t b);
   // After the last pair: where each group's points are.
   void number_points();
-  // How many bodies weight goes through at most on its shortest way to what is at rest; of bodies that have
-  // no such way, to those that `held(visit)` calls visit(body) for; else to any other.
+  // The height of the pile: the largest number of bodies on a shortest path of contacts from a body down to what
+  // is at rest. Bodies without such a path count to those that `held(visit)` calls visit(body) for (held by a
+  // robot), or else to any other body.
   template <class Held>
   int32_t levels(const Held& held);
 

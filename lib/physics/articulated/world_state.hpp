@@ -105,7 +105,7 @@ static_assert(sizeof(PersistentLink<double>) == kLinkWords * sizeof(double) &&
 
 // A free body within a substep.
 struct FreeBody {
-  Mat3 R, inv_sqrt_inertia;  // R_WB; C^-1 R^T: torque impulse in the world to half-solved coordinates
+  Mat3 R, inv_sqrt_inertia;  // R_WB; C^-1 R^T: the factor Z of contact_solver.inl for torques
   Vec3 v, w;                 // predicted, without contacts
   Vec3 v1, w1;               // with them
   Vec3 way;                  // mean velocity of the substep, without contacts

@@ -12,8 +12,9 @@
 //      lowest corner of the shape's box;
 //   5. of what is left, four at a time, the distance of the segments (Ericson, Real-Time Collision Detection,
 //      2005, section 5.1.9).
-// Looking ahead, the boxes of bodies' shapes grow by their own way and that of the fastest link, and pairs
-// whose capsules are nearer than both ways are visited too, as far as those ways matter (Pair::thin).
+// Looking ahead (speculative contacts), the boxes of bodies' shapes grow by how far they and the fastest link move
+// in a substep, and pairs whose capsules may meet within it are visited too, unless both are so slow that their
+// overlap is found in time (thin()).
 // All in floats, with a slack for their rounding: a pair that touches is never passed over, so what is found
 // does not depend on the bounds. A bound with a number missing (NaN) touches nothing.
 #pragma once
@@ -59,7 +60,7 @@ class BroadPhase {
   struct Pair {
     int32_t a, b;
     int32_t plane;  // index of planes_ when b is one: only its own test counts; else -1
-    float thin;
+    float thin;     // m, see thin()
   };
   struct Plane {
     Vec3 n;
@@ -103,7 +104,8 @@ class BroadPhase {
   // the fastest link. Nothing is done where all are slow.
   void look_ahead(float link_way);
   bool looks_ahead() const { return ahead_; }
-  // m, the way of a against b that is left to their overlap; out of reach for pairs without a body.
+  // m, how far a may move against b in a substep and still be found by their overlap alone, because it cannot
+  // pass through; only faster pairs are looked at ahead. Out of reach for pairs without a body.
   float thin(int32_t pair) const { return pairs_[pair].thin; }
   // m, half of the least width of a shape; of a plane out of reach.
   float half_width(int32_t shape) const { return half_widths_[shape]; }
