@@ -77,7 +77,7 @@ void read_config(const rdm_agent_config* c, Config* out) {
   a.cost_limits = in.cost_limits;
   out->defaults = read_options(in.defaults, in.num_defaults, "defaults");
   out->options = read_options(in.options, in.num_options, "options");
-  // Who was compiled before configs had `fields` cannot say what parts of a row are called: its agents see whole rows.
+  // A host that was compiled before configs had `fields` cannot name the parts of a row: its agents observe all.
   if (c->struct_size <= offsetof(rdm_agent_config, fields))
     out->defaults.erase(std::remove_if(out->defaults.begin(), out->defaults.end(), names_fields),
                         out->defaults.end());

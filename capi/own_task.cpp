@@ -1,4 +1,5 @@
-// rdm_task_create and its like: a host's description becomes a row of the registry, its functions a Task.
+// rdm_task_create and the other calls for tasks of a host: the description becomes a row of the registry, and the
+// host's functions become a Task.
 #include "capi/own_task.hpp"
 
 #if RDM_WITH_SIM
@@ -32,12 +33,12 @@ rdm_task_def default_def() {
   return d;
 }
 
-// The rows that every task of a world with an engine has.
+// The options that every such task has, beside its own.
 const OptionTable& simulation_rows() {
   struct Filled : SizedOptionTable<64> {
     Filled() {
       add_sim_options(*this);
-      set_default("contacts_max", 0);  // nobody but the scene knows
+      set_default("contacts_max", 0);  // as many as the scene needs, which is known once it is built
       set_default("speculative_contacts", 1);
     }
   };
@@ -90,7 +91,8 @@ bool among(const char* word, const char* choices) {
   }
 }
 
-// A build may make pools of other tasks; one that makes a pool of its own would never end.
+// A build may make pools of other tasks. A build that makes a pool of its own task would recurse without end, so
+// the depth is bounded.
 constexpr int32_t kMostNested = 8;
 thread_local int32_t t_nested = 0;  // builds of this thread that have not returned
 
@@ -107,7 +109,7 @@ struct Nested {
   Nested& operator=(const Nested&) = delete;
 };
 
-// A task of one pool: what its functions are called with.
+// The task of one pool: it calls the host's functions with the pool's instance.
 class BuiltTask final : public Task {
  public:
   BuiltTask(const OwnTask& own, const Options& o, void* user)
@@ -164,7 +166,7 @@ class BuiltTask final : public Task {
     try {
       own_.run("check_state", [&] { return d.check_state(d.user, instance_.data(), state); });
     } catch (Error& e) {
-      e.code = Code::kFormat;  // whatever the host returned: it is the bytes that are wrong
+      e.code = Code::kFormat;  // whatever code the host returned, the fault is in the bytes of the state
       throw;
     }
   }
@@ -182,7 +184,7 @@ class BuiltTask final : public Task {
         return row.result(d.reset_many(d.user, instance_.data(), &row.rows));
       });
     } catch (...) {
-      keep();  // what failed by chance is not tried with the same draws
+      keep();  // also after a failure, or the next reset would draw the same numbers and fail again
       throw;
     }
     keep();
@@ -523,7 +525,7 @@ void OwnTask::take_options() {
     if (o.kind < RDM_KIND_NUMBER || o.kind > RDM_KIND_TEXT)
       fail(Code::kRange, "def.options[%d].kind: %d of %s is outside [0, 3]", i, o.kind, o.key);
     const auto kind = static_cast<OptionKind>(o.kind);
-    // a key that every task has takes the host's default in its own row; others are new rows
+    // for the key of an option that every task has, the host only sets the default; other keys are new options
     OptionSpec* row = nullptr;
     for (OptionSpec& r : tail)
       if (same_name(r.key, o.key)) row = &r;

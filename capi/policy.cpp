@@ -22,8 +22,8 @@ void make(rdm_policy** out, const void* bytes, size_t size, const HostHooks& hoo
   *out = p;
 }
 
-// Hooks that cut blocks from a caller's memory, one after the other, and take none back. What `user` points to is needed
-// while blocks are cut alone.
+// Memory hooks that hand out blocks of a caller's memory one after the other; release does nothing. `user` is needed
+// only while blocks are handed out.
 struct Given {
   unsigned char* at;
   size_t left;
@@ -59,10 +59,10 @@ struct PolicyTensor {
   const char* name;  // static
   const float* data;
   int32_t rows, cols;
-  // of a policy that sees a part of the row: `data` has but the seen ones of cols (rows, where that is 1),
-  // then those that are none of the row's
+  // for a policy that observes only a part of the row: `data` has the observed columns (rows, if cols is 1), then
+  // those that do not belong to the row, such as features of points
   bool part = false;
-  float unseen = 0;                        // what stands for the others
+  float unseen = 0;                        // the value of all other columns
   const int16_t* millimetres = nullptr;    // in the place of data: points of the example
   const unsigned char* numbers = nullptr;  // in the place of data: their classes, colours
 };
@@ -88,7 +88,7 @@ void copy_tensor(const PolicyView& v, const PolicyTensor& t, float* out) {
   }
 }
 
-// Those of what sees points.
+// The tensors of a policy that reads points.
 bool eyes_tensor_at(const PolicyView& v, int32_t i, PolicyTensor* out) {
   static constexpr const char* kWeights[] = {"encoder.0.weight", "encoder.1.weight", "encoder.2.weight",
                                              "encoder.3.weight"};
@@ -250,7 +250,7 @@ namespace {
 void need_rows(int32_t rows) {
   if (rows < 1) fail(Code::kRange, "rows: %d is less than 1", rows);
 }
-// Of one that sees no points.
+// Acts with a policy that does not read points.
 void need_blind(const Policy& policy) {
   if (policy.view().eyes.points) fail(Code::kState, "policy: it reads points; call rdm_policy_act_points");
 }

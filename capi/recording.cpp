@@ -278,7 +278,7 @@ void check_rows(const char* name, const float* x, int32_t env, size_t width) {
       fail(Code::kArgument, "%s: row %d is not finite", name, env);
 }
 
-// What a step of the pool would only reset gets no row.
+// A world that the next step only resets gets no row, because its action is ignored.
 bool resets(const Pool& p, int32_t env) {
   const Buffers& b = p.buffers();
   return p.config().autoreset == Autoreset::kNextStep && (b.terminated[env] || b.truncated[env]);
@@ -363,7 +363,7 @@ DemoRows demo_rows(const Recording& x, const AgentConfig& a) {
   return {static_cast<int32_t>(v.rows), v.obs, v.label, v.episode, {}};
 }
 
-// Its clouds as the agent's encoder counts them, in `memory`; none for an agent without eyes.
+// The recording's clouds in the encoder's units, in `memory`; none for an agent without an encoder.
 PointRows demo_clouds(const Recording& x, const PointNetShape& eyes, Vector<int16_t>& memory) {
   PointRows out;
   const RecordingRows v = x.view();

@@ -15,7 +15,7 @@ namespace {
 
 constexpr auto kMaxFloat = static_cast<double>(std::numeric_limits<float>::max());
 
-// Zero times a number that is not finite is not a number.
+// One sum for all: 0 times a number that is not finite is NaN, and NaN stays in the sum.
 bool all_finite(const float* x, size_t count) {
   float sum = 0;
   for (size_t j = 0; j < count; ++j) sum += x[j] * 0.0f;
@@ -336,8 +336,8 @@ void Collector::value_truncated(const Transition& t) {
   }
 }
 
-// A fall ends costs early, which is no safety: the steps that are missing are charged at the episode's own
-// rate, in full in the episode's cost (charge [cost_dim]), discounted in what is learned from.
+// A fall ends the costs of an episode early, which is not safe behaviour. The missing steps are therefore charged at
+// the episode's mean cost per step: in full in the episode's sum (charge [cost_dim]), discounted in the sample.
 void Collector::charge_fall(int32_t env, float discount, float* sample_cost, double* charge) const {
   const int64_t length = episodes_.length(env), left = resolved_->episode_steps - length;
   for (int32_t k = 0; k < resolved_->config.cost_dim; ++k) charge[k] = 0;
@@ -378,8 +378,8 @@ void Collector::scale_rewards(const Transition& t) {
   }
 }
 
-// What statistics and limits count of a row: all of a valid one; of another the cost, and its time and
-// success unless it only resets, as the first row of an episode that does not end it.
+// What statistics and limits count of a row: everything of a valid one. Of an invalid row only the cost counts, and
+// its time and success unless the row is a mere reset (the first row of an episode, which does not end it).
 void Collector::count_row(const Transition& t, int32_t env, const float* cost, int32_t steps) {
   const auto e = static_cast<size_t>(env), columns = static_cast<size_t>(resolved_->config.cost_dim);
   const bool valid = flag(t.valid, e, true);
@@ -398,7 +398,8 @@ void Collector::count_row(const Transition& t, int32_t env, const float* cost, i
     if (t.status[e] >> bit & 1) ++status_[bit];
 }
 
-// Ends the episode of a row that is over, or closes the sums of one that is too long; its path goes on.
+// Ends the episode where the row ended it. Where an episode has reached episode_steps without an end, only its sums
+// are closed: its path continues for the advantages.
 void Collector::end_row(const Transition& t, int32_t env, float discount, float* sample_cost) {
   const auto e = static_cast<size_t>(env);
   const bool terminated = flag(t.terminated, e, false);
@@ -493,7 +494,7 @@ EpochTotals Collector::totals() const {
       out[kSteps] += epoch_steps_[e];
       out[kRunning] += static_cast<double>(episodes_.length(env));
     }
-    if (b > 0) return;  // counts are of this rank, whichever block they stand with
+    if (b > 0) return;  // counts are for the whole rank, so they are added once, with its first block
     out[kInvalid] = static_cast<double>(invalid_);
     out[kCut] = static_cast<double>(cut_);
     for (size_t i = 0; i < EpochTotals::kStatusKinds; ++i) out[kStatus + i] = static_cast<double>(status_[i]);

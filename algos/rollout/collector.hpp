@@ -7,8 +7,8 @@
 //             observation is added, discounted; at a termination costs may be charged on (terminal_cost)
 //   estimate  V of the last observation closes the paths that still run, then gae.hpp
 //
-// What is learned from and what limits hold for are two things. The cost advantage is of costs discounted
-// like rewards; J_c is an episode's plain sum (Achiam et al. 2017 discount both; the tables of ReDMan and
+// The cost that is learned from differs from the cost that a limit is on. The cost advantage uses costs that are
+// discounted like rewards; J_c is an episode's plain sum (Achiam et al. 2017 discount both; the tables of ReDMan and
 // Safety Gym count plain sums). With discount 0.96 a step and four steps a decision, the hands' settings, the
 // gradient looks 7 decisions ahead, the limit over the whole episode. discounted_limit=true discounts both.
 #pragma once
@@ -28,7 +28,7 @@ class Collector {
   // The three must outlive the collector.
   void open(const ResolvedAgentConfig& resolved, const Networks& nets, BatchWorkers& workers);
 
-  // clouds [num_envs], in metres: of an agent with eyes, which no other takes.
+  // clouds [num_envs], in metres: needed with a point-cloud encoder, not allowed without.
   void act(const float* obs, bool sample, float* action, const PointRows& clouds = {});
   void record(const Transition& t);
   // A decision that was taken elsewhere by this policy: act and record, with its action in the place of a
@@ -39,7 +39,7 @@ class Collector {
   void replace(int32_t env, const float* action);
   // What act will do next in worlds that show obs [rows][obs_dim], after a sampled act: of environments
   // env [rows], by copies noise [num_envs] and offset [num_envs][action_dim] of their noise, which go on; null
-  // noise: the means. action [rows][action_dim]. Not of an agent with eyes.
+  // noise: the means. action [rows][action_dim]. Not for an agent with a point-cloud encoder.
   void foresee(const int32_t* env, const float* obs, int32_t rows, Stream* noise, float* offset,
                float* action) const;
   void peek(int32_t env, Stream* noise, float* offset) const { noise_.peek(env, noise, offset); }

@@ -43,7 +43,7 @@ CouplingIn turned_about(const CouplingIn& c) {
 
 }  // namespace
 
-// With options.root a part of the file's joints is not there.
+// With config.root only a part of the file's joints is read; an element about other joints is left out.
 bool MjcfReader::elsewhere(const Element& e, const std::string& joint) const {
   if (joint_by.count(joint)) return false;
   if (!options.root.empty() && options.root != "world") return true;
@@ -104,7 +104,7 @@ void MjcfReader::read_tendons() {
   }
 }
 
-// cf q_follower + cl q_leader = length, but for `slack` of the sum to either side.
+// Adds the coupling cf q_follower + cl q_leader = length, in which the sum may be off by `slack` to either side.
 void MjcfReader::couple_joints(const Element& e, const std::string& follower, double cf,
                                const std::string& leader, double cl, double length, double slack) {
   model.couplings.push_back({follower, leader, -cl / cf, length / cf, slack / std::abs(cf), &e});
@@ -167,7 +167,7 @@ bool MjcfReader::is_mocap(const std::string& body) const {
   };
   return in(mujoco);
 }
-// Nothing moves it against the root.
+// True: the body has no joint between it and the root, so it does not move relative to it.
 bool MjcfReader::stands(const std::string& body) const {
   if (body == "world") return options.root.empty() || options.root == "world";
   out->budget.spend(Cost::kSteps, model.bodies.size());
@@ -256,8 +256,8 @@ void MjcfReader::read_equality(const Element& e) {
   model.couplings.push_back({*one, *two, poly[1], poly[0] + r1 - poly[1] * r2, 0, &e});
 }
 
-// Turns groups about whose leader has no actuator where a follower has one, and those whose joints follow
-// two others each.
+// Chooses another leader for groups in which only a follower has an actuator, and for groups in which a joint
+// follows two others.
 void MjcfReader::lead_by_driven() {
   std::vector<CouplingIn> all;
   std::set<std::string> placed;
@@ -332,7 +332,7 @@ void MjcfReader::note_left_out(const Element& e, const char* why) {
 }
 
 void MjcfReader::read_actuators() {
-  for (const bool position : {true, false})  // which of a joint's actuators is taken: the first that holds it
+  for (const bool position : {true, false})  // a joint takes its first position actuator, if it has any
     for (const Element* all : mujoco.all("actuator"))
       for (const auto& e : all->children) {
         if (row_of(*e, "actuator").use != Use::kRead) continue;
@@ -388,7 +388,7 @@ void MjcfReader::read_actuator(const Element& e) {
   if (const auto* t = get("gear")) gear = numbers(e, "gear", *t, 1, 6)[0];
   if (gear == 0) refuse_at(RDM_ERROR_RANGE, e, "gear is 0");
 
-  // How the length grows with the joint that leads; groups that only this tendon joins follow the first.
+  // Change of the tendon's length per angle of each leader. Groups that only this tendon connects follow the first.
   std::vector<std::pair<std::string, double>> groups;  // leaders, and length per angle of each
   for (const auto& [name, share] : parts) {
     const Follows f = leader_of(model, name, &out->budget);

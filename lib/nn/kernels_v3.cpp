@@ -1,5 +1,5 @@
-// Kernels for x86-64-v3 (AVX2, FMA). The pragma stands after every header that has code in it, so that no
-// shared inline function is compiled with it.
+// Kernels for x86-64-v3 (AVX2, FMA). The pragma comes after all headers, so that no inline function that other files
+// share is compiled for this instruction set.
 #include "base/cpu.hpp"
 #include "nn/kernels.hpp"
 
@@ -48,7 +48,7 @@ inline V fma(V a, V b, V c) {
 inline V root(V a) {
   return _mm256_sqrt_ps(a);
 }
-// Of two operands with a not-a-number, the second is given.
+// If an operand is NaN, min and max give the second one.
 inline V low(V a, V b) {
   return _mm256_min_ps(a, b);
 }

@@ -69,7 +69,7 @@ ActScratch cut_act_scratch(const PolicyView& v, int32_t rows, void* memory) {
   return s;
 }
 
-// Where rows of an action and of its mean go; null: they are not wanted, but one of them is.
+// Where actions and their means are written; one of the two may be null.
 struct ActOut {
   float *action = nullptr, *mean = nullptr;
   float limit = 1;  // on magnitudes of actions
@@ -273,7 +273,8 @@ void write_fields(Writer& out, const PolicyView& v) {
   out.end_section();
 }
 
-// A policy file's parts in place, all of them looked at but for the example's action.
+// The parts of a policy file, as pointers into its bytes. All are checked except the example's action, which needs
+// the network (try_example).
 struct PolicyParts {
   PolicyView v;                           // its numbers; pointers come with keep_parts
   const unsigned char* ranges = nullptr;  // of entries, where it sees a part of the row
@@ -440,12 +441,12 @@ Kept keep_parts(Arena& arena, const PolicyParts& parts) {
   return kept;
 }
 
-// Of an encoder what is not a number would lose against any other point, unseen.
+// A NaN of one point would be hidden by the maximum over points, so the encoder's sums are bounded instead.
 bool sums_stay_finite(const PointNetShape& eyes, const float* params) {
   return !eyes.points || mlp_bound(eyes.mlp, params, largest_point(eyes)) <= kMaxSum;
 }
 
-// What only a network that computes can say.
+// The check that needs the finished network: it must reproduce the example action of the file.
 void try_example(const Kept& kept) {
   const PolicyView& v = kept.v;
   if (!sums_stay_finite(v.eyes, v.eyes_params)) bad("the encoder's sums may be too large");

@@ -166,7 +166,7 @@ Planner::Planner(const PlannerConfig& c)
     rows_[t] = knot_row(settings_.interpolation, settings_.knots, settings_.horizon, t);
   rollouts_->task().initial_mean(start_);
   for (int32_t j = 0; j < action_dim_; ++j) start_[j] = clip_unit(start_[j]);
-  forget();  // a plan is the start action until one is made
+  forget();  // the first plan repeats the start action
 }
 
 Planner::~Planner() {
@@ -206,14 +206,14 @@ void Planner::set_plan(const float* plan) {
   given_ = false;
 }
 
-// The last action stays.
+// Shifts the plan by one step and repeats its last action at the end.
 void Planner::shift_plan() {
   const size_t dim = sz(action_dim_);
   std::memmove(plan_, plan_ + dim, (sz(settings_.horizon) - 1) * dim * sizeof *plan_);
 }
 
 void Planner::set_budgets(const Pool& pool, int32_t env) {
-  // share: of the budget that is left, as much as the horizon is of the steps that are left
+  // budget=share: of the budget that is left, the part that the horizon has of the steps that are left
   const double left = pool.task().max_steps() - pool.episode_step(env);
   const double share = settings_.share ? std::min(1.0, settings_.horizon * pool.repeat() / left) : 1.0;
   for (int32_t k = 0; k < cost_dim_; ++k)
@@ -229,7 +229,7 @@ bool Planner::propose(const Pool& pool, int32_t env) {
   rollouts_->copy(0, pool, env);
   const Buffers& b = rollouts_->buffers();
   const int32_t steps = std::max(1, policy_->repeat() / pool.repeat());
-  // decisions fall where they would if the policy acted alone
+  // the policy decides in the steps in which it would decide without the planner
   const int32_t phase = pool.episode_step(env) / pool.repeat();
   std::fill_n(alive_, settings_.samples, uint8_t{0});
   alive_[0] = 1;
@@ -242,12 +242,12 @@ bool Planner::propose(const Pool& pool, int32_t env) {
       std::copy_n(before, action_dim_, action);
     else
       policy_->act(b.obs, 1, action);
-    for (int32_t j = 0; j < action_dim_; ++j)  // a network that overflows proposes nothing
+    for (int32_t j = 0; j < action_dim_; ++j)  // the last plan replaces what an overflow made infinite
       action[j] = std::isfinite(action[j]) ? clip_unit(action[j]) : before[j];
     if (!alive_[0] || t + 1 == settings_.horizon) continue;
     if (stopped()) {
       whole = false;
-      alive_[0] = 0;  // the rest is the last action
+      alive_[0] = 0;  // the episode is over: the rest of the proposal repeats the last action
       continue;
     }
     std::copy_n(action, action_dim_, b.action);
@@ -263,7 +263,7 @@ void Planner::draw_noise() {
   stream_.normals(noise_, settings_.samples * width);
   for (int32_t i = 0; i < settings_.samples; ++i) {
     float* e = noise_ + sz(i) * sz(width);
-    if (i == 0 || (i == 1 && foreign_))  // the centre itself, and the plan of before beside a policy's
+    if (i == 0 || (i == 1 && foreign_))  // no noise: the centre, and the last plan beside a policy's
       std::fill_n(e, width, 0.0f);
     else
       for (int32_t j = 0; j < width; ++j) e[j] *= sigma_[j];
@@ -309,7 +309,7 @@ bool Planner::roll_out(const Pool& pool, int32_t env) {
       for (int32_t k = 0; k < cost_dim_; ++k)
         c.cost[k] += static_cast<double>(b.cost[sz(i) * sz(cost_dim_) + sz(k)]);
       if (!b.terminated[i] && !b.truncated[i]) continue;
-      // an end by failure of the world is none to be sought, whatever its return
+      // a trajectory on which the world fails must never be chosen, whatever its return
       c.lost = (b.status[i] & (kStatusDiverged | kStatusBadAction | kStatusTask)) != 0;
       alive_[i] = 0;
       --alive;
@@ -334,8 +334,8 @@ void Planner::add_terminal(double discount) {
 void Planner::move_centre() {
   for (int32_t i = 0; i < settings_.samples; ++i) standings_[i] = standing(courses_[i], rule_);
   rank_courses(standings_, settings_.samples, order_);
-  // The new centre is a weighted mean of samples: of the best alone, of all by e^(return / temperature), or
-  // of the elites alike.
+  // The new centre is a weighted mean of samples: the best one alone, all by e^(return / temperature), or the elites
+  // with equal weights.
   std::fill_n(weights_, settings_.samples, 0.0);
   if (settings_.best_only)
     weights_[order_[0]] = 1;
@@ -369,7 +369,7 @@ void Planner::describe_iteration(PlanInfo* out) const {
 void Planner::make_plan(const Pool& pool, int32_t env, PlanInfo* out) {
   rollouts_->copy(0, pool, env);  // refuses a pool that does not fit
   steps_ = 0;
-  ahead_ = given_ ? 1 : 0;  // the old plan's first action has been taken
+  ahead_ = given_ ? 1 : 0;  // the first action of the old plan has been executed
   set_budgets(pool, env);
   for (int32_t k = 0; k < settings_.knots; ++k)
     std::copy_n(noise_std_, action_dim_, sigma_ + sz(k) * sz(action_dim_));
@@ -387,14 +387,14 @@ void Planner::make_plan(const Pool& pool, int32_t env, PlanInfo* out) {
       const Stream before = stream_;
       draw_noise();
       if (!roll_out(pool, env)) {
-        stream_ = before;  // the next call's noise is as if this iteration had not begun
+        stream_ = before;  // an unfinished iteration must not change the noise of the next call
         out->cut = true;
         break;
       }
       move_centre();
       ++out->iterations;
       describe_iteration(out);
-      foreign_ = false;  // where it was good, the centre has moved to it
+      foreign_ = false;  // the last plan was a sample of this iteration: if it was good, it is the centre
     }
   } catch (...) {
     stream_ = first;
@@ -423,7 +423,7 @@ void Planner::act(const Pool& pool, int32_t env, float* action, PlanInfo* info) 
   if (info) *info = out;
 }
 
-// What has to agree for a state to be gone on with.
+// The settings that must agree before a saved state can be continued.
 uint64_t Planner::fingerprint() const {
   const Vector<char> lines = options_.lines();
   uint64_t hash = hash_bytes(lines.data(), lines.size() - 1);

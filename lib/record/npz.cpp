@@ -213,7 +213,7 @@ T NpzReader::value(uint64_t at) const {
 }
 
 void NpzReader::read_directory() {
-  // the end stands before a comment of up to 65,535 bytes, and after the 64-bit form of itself
+  // the end record is followed by a comment of up to 65,535 bytes, and comes after its 64-bit form
   if (size_ < kEndBytes) bad("it is not a complete archive (.npz)");
   const uint64_t first = size_ - std::min(size_, kMostComment + kEndBytes);
   Vector<unsigned char> tail(static_cast<size_t>(size_ - first));
@@ -263,7 +263,7 @@ uint64_t NpzReader::read_member(uint64_t at, uint64_t end) {
     }
     e += 4u + length;
   }
-  // a member whose name is spoiled would be one that is missing: both places say it
+  // a damaged name would look like a missing member, so the two places that hold the name are compared
   const uint64_t local = m.offset + kLocalBytes;
   if (local > size_ || size_ - local < name || value<uint16_t>(m.offset + 26) != name)
     bad("the archive's directory is damaged");
@@ -322,7 +322,7 @@ NpyArray NpzReader::header(const char* name) const {
 NpyArray NpzReader::array(const char* name) {
   Place place;
   NpyArray a = read_header(name, &place);
-  Vector<unsigned char>().swap(bytes_);  // the last one's memory first
+  Vector<unsigned char>().swap(bytes_);  // free the last array before the next one is allocated
   bytes_.resize(place.size);
   source_.read(place.begin, bytes_.data(), place.size);
   if (crc32(bytes_.data(), place.size) != place.checksum)

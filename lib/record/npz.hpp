@@ -2,8 +2,8 @@
 // version 1 (.npy), whose header is a Python literal.
 //
 // Enough of ZIP for what numpy.savez writes and numpy.load opens, sizes beyond 4 GB in the 64-bit form; the
-// fields are those of PKWARE's application note (APPNOTE.TXT), section 4.3. Members that are packed are
-// refused. Nothing that a file says is believed: every size is held against the bytes that are there.
+// fields are those of PKWARE's application note (APPNOTE.TXT), section 4.3. Compressed members are refused. No size
+// in a file is trusted: each is checked against the bytes that there are.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -47,8 +47,8 @@ class NpzWriter {
   int count_ = 0;
 };
 
-// The directory at the end is read first, then headers, and an array when it is asked for: what a file says of
-// itself is known before memory is taken for it.
+// The directory at the end is read first, then headers, and an array only when it is asked for. All sizes are thus
+// known and checked before memory is allocated.
 class NpzReader {
  public:
   // Error(kFormat), the text begins with `what`, for bytes that are no whole archive. Borrows the source.

@@ -71,7 +71,7 @@ void Shield::read_options(const ShieldConfig& c) {
   set_ = kRows.read(options_);
   if (set_.copies == 0) return;
   worlds_ = set_.copies;
-  set_.block = 1;  // what is foreseen in one of them does not come in another
+  set_.block = 1;  // the copies draw different dynamics, so the actions foreseen in one do not fit another
 }
 
 Shield::Shield(const ShieldConfig& c) : hooks_(c.hooks), steps_(c.steps) {
@@ -117,7 +117,7 @@ void Shield::read_budgets(const double* budgets) {
   if (!any) fail(Code::kArgument, "shield: no cost has a budget");
 }
 
-// What may be spent is not to be kept at 0.
+// A guard keeps a cost at 0, so only guards of costs with a budget of 0 are added.
 void Shield::declare_guards(const Pool& pool) {
   Vector<float> normal(sz(dim_));
   Guard g;
@@ -338,7 +338,7 @@ void Shield::give(const Pool& pool, int32_t env, const float* proposed, bool ask
     // where nothing is clean, and nothing has to be, there is no plan
     if (at >= 0) done = plan_ + plan_of(env) + row_of(at);
     const bool refused = at < 0 || at == p.refused;
-    // what was foreseen stands for what is proposed, which statistics that have moved since make another
+    // the foreseen action runs, not the proposed one: if the normaliser has changed since, the two differ
     if (foreseen && !asked && at < p.block) own = refused ? refused_ + row_of(env) : foreseen_own(env, at);
     if (at < 0 || p.dirty)
       r.kind = ShieldKind::kUnproven;

@@ -185,7 +185,7 @@ std::string literal_text(int8_t v) {
   return std::to_string(v);
 }
 
-// What the self-test holds the tables to: FNV-1a over the numbers' bits.
+// Checksum by which the self-test checks the tables: FNV-1a over the bits of the numbers.
 class Checksum {
  public:
   void add(float v) {
@@ -243,7 +243,7 @@ double upwards(double v) {
   return std::ceil(v / digit) * digit;
 }
 
-// A text of somebody else's inside a comment.
+// Makes a text from a file safe inside a C comment.
 std::string harmless(std::string text) {
   for (char& c : text)
     if (!std::isalnum(static_cast<unsigned char>(c)) && !std::strchr("_-. ", c)) c = '_';
@@ -313,7 +313,7 @@ TestRows test_rows(const Network& network) {
 struct Sizes {
   size_t front = 0, back = 0, widest = 0;
 };
-// Of the two rows that layers read and write in turn.
+// The size of the two buffers that layers read and write in turn.
 Sizes sizes_of(const std::vector<Layer>& layers) {
   Sizes s;
   s.front = layers[0].in;

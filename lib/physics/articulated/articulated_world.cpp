@@ -190,7 +190,7 @@ void ArticulatedWorld::own_constants() {
   for (int32_t i = 0; i < scene_->num_bodies; ++i) own_models_[i] = body_model(*scene_, i, &dynamics_);
 }
 
-// Momenta are stored, not only velocities: those of links that are heavier now are made anew.
+// Momenta are stored beside velocities, so those of links whose mass has changed are computed again.
 void ArticulatedWorld::dynamics_changed() {
   own_constants();
   wake_all(*scene_, &state_);
@@ -258,7 +258,8 @@ void ArticulatedWorld::push_body(int32_t i, const Vec3& force, const Vec3& torqu
   state_.pushed = true;
 }
 
-// Back to the poses at the step's start, at rest: the world stays usable and is still marked.
+// After a divergence: back to the poses at the start of the step, at rest. The world stays usable and keeps its
+// status bit.
 void ArticulatedWorld::recover() {
   status_ |= kStatusDiverged;
   num_contacts_ = state_.num_warm = state_.num_kept = 0;
@@ -337,10 +338,11 @@ bool words_within(Reader& in, size_t count, double bound) {
   return good;
 }
 
-// Every joint before a link adds to what its rotation is off.
+// How far a link's rotation may be off: the rounding of every joint before it adds up.
 constexpr double kChainTolerance = 0.1;
 
-// A rotation, velocities and momenta in their bounds, sets that are sets, a unit quaternion.
+// Checks a link's saved words: a rotation, velocities and momenta within their bounds, valid active sets, a unit
+// quaternion.
 template <class S>
 bool link_sound(const PersistentLink<S>& link) {
   constexpr auto wide = [](S x) { return static_cast<double>(x); };
@@ -407,7 +409,8 @@ void ArticulatedWorld::check(Reader& in) const {
   if (!good) fail(Code::kFormat, "world state: a number is not finite or out of range");
 }
 
-// Islands are named by their lowest body, quiet times are in range, and who sleeps stands still.
+// Checks the sleepers of a saved state: an island has the number of its lowest body, quiet times are in range, and
+// sleeping bodies do not move.
 bool ArticulatedWorld::sleep_sound(Reader& in, Reader bodies) const {
   const int32_t most = shared_->model.sleep_substeps;
   Reader rows = in;

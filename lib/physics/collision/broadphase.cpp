@@ -14,7 +14,8 @@ constexpr float kEverywhere = 1e15f;  // m, radius of a plane's bound: its squar
 constexpr int32_t kBlock = 4;
 constexpr float kSlack = kBoundSlack, kCenterSlack = kBoundCenterSlack, kFlatness = kBoundFlatness,
                 kFar = kBoundFar;
-// So far into each other two may come unseen: of the thinner one's half width, and m.
+// How far two shapes may overlap before they must be found: a share of the thinner one's half width, and at most m.
+// Slower pairs are not looked at ahead (BroadPhase::thin).
 constexpr float kThinShare = 0.5f, kMostThin = 1.5e-3f;
 
 Float4 clamp_unit(Float4 x) {
@@ -112,7 +113,7 @@ Capsule capsule_around(const SceneShape& shape) {
   const Vec3& s = shape.def.size;
   const Capsule sphere = {{}, shape.radius};
   if (shape.def.kind == ShapeKind::kCapsule) return {{0, 0, s.y}, s.x};
-  // of links the engine knows no axis
+  // links are bounded by spheres, because the engine does not compute their axes
   if (shape.carrier != Carrier::kBody && shape.carrier != Carrier::kStatic) return sphere;
   if (shape.def.kind == ShapeKind::kCylinder && s.y > s.x) return {{0, 0, s.y}, s.x};
   const bool round = shape.def.kind == ShapeKind::kEllipsoid;
@@ -315,7 +316,7 @@ uint32_t BroadPhase::near(int32_t shape, const Block& block) const {
   return bits_of(meet);
 }
 
-// The corners farthest below it.
+// Bit k: the lowest corner of box k lies below the plane.
 uint32_t BroadPhase::near(const Plane& plane, const Block& block) {
   Float4 above = splat(-static_cast<float>(plane.d)), reach{};
   for (int k = 0; k < 3; ++k) {
@@ -398,7 +399,7 @@ bool BroadPhase::passes(int32_t index, const Vec3& way) const {
   const double spheres = static_cast<double>(a.center[3]) + static_cast<double>(b.center[3]) + slack;
   const Vec3 nearest = r + std::clamp(-rdm::dot(r, way) / rdm::dot(way, way), 0.0, 1.0) * way;
   if (rdm::dot(nearest, nearest) > spheres * spheres) return true;
-  // the capsules, along the way between them: what separates them now and at the end does so all the time
+  // the capsules: a direction that separates them at the start and at the end separates them all the time between
   const Vec3 x = between_segments(r, u, v);
   const double length = norm(x),
                reach = static_cast<double>(a.axis[3]) + static_cast<double>(b.axis[3]) + slack;
@@ -429,7 +430,7 @@ uint32_t BroadPhase::capsules_meet(const int32_t* list, uint32_t* ahead) const {
   return bits_of(square < reach * reach);
 }
 
-// What is no link and near a shape of an articulation.
+// Marks in near_, for each shape of a robot, the shapes of bodies, statics and planes whose boxes meet its own.
 void BroadPhase::mark_others() {
   std::fill_n(near_, first_other_ * words_, uint64_t{0});
   for (int32_t i = 0; i < num_others_; ++i) {
@@ -447,8 +448,8 @@ void BroadPhase::mark_others() {
   }
 }
 
-// Of at most kBatch pairs: all tests before any of the collisions, so that they overlap in the machine. The
-// list has room up to a multiple of four.
+// Tests at most kBatch pairs, then visits those that passed. All tests come before the first visit, so that the
+// processor can overlap them. The list must be long enough to be padded to a multiple of four.
 void BroadPhase::visit_near(int32_t* list, int32_t count, Visit visit, void* context) const {
   for (int32_t k = count; k % 4 != 0; ++k) list[k] = list[0];
   uint64_t bits = 0, ahead = 0;

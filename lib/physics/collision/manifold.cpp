@@ -24,7 +24,7 @@ constexpr double kFlat = 0.985;      // cosine between the overlap's normal and 
 constexpr double kAlong = 0.1;       // sine between two edges that count as along each other
 constexpr double kPreferred = 1e-3;  // by which a's face must fit better than b's to be the one cut at
 constexpr double kSideways = 1e-9;   // sine of two axes that have no crossing
-constexpr double kDeepEnough = 0.9;  // of the deepest point, for two ends to stand in for it
+constexpr double kDeepEnough = 0.9;  // share of the deepest point's depth at which two ends may replace it
 constexpr int kMostCut = 2 * Feature::kMost;
 static_assert(kMaxHullPoints <= kMostCut, "a hull's points are thinned out too");
 
@@ -91,7 +91,7 @@ Axis axis_of(const Convex& s) {
           s.kind == ShapeKind::kCylinder};
 }
 
-// Contact of two round sides. -1 where a cylinder's cap takes part, which is another matter.
+// Contact points of two round sides (stage 1 above); -1: a cylinder's cap is involved, so stages 2 and 3 decide.
 int round_sides(const Axis& a, const Axis& b, ManifoldPoint* out) {
   const Vec3 r = a.p - b.p;
   const double k = dot(a.u, b.u), ar = dot(a.u, r), br = dot(b.u, r), d = 1 - k * k;
@@ -113,7 +113,7 @@ int round_sides(const Axis& a, const Axis& b, ManifoldPoint* out) {
     return true;
   };
   if (along) {
-    // from where both are side by side on: the ends of that stretch
+    // parallel axes: the points are the ends of the stretch where both lie side by side
     const double way = k < 0 ? -1 : 1, shift = -ar;  // of b's centre along a
     const double low = std::max(-a.half, shift - b.half), high = std::min(a.half, shift + b.half);
     if (low < high) {
@@ -124,7 +124,7 @@ int round_sides(const Axis& a, const Axis& b, ManifoldPoint* out) {
         if (!at(sa, tb, out + count)) continue;
         deepest = std::max(deepest, out[count++].depth);
       }
-      // one on top of the other is shorter out along the axis
+      // deeper than the stretch is long: the shortest way out is along the axis, over a cap
       return (a.capped || b.capped) && deepest > high - low ? -1 : count;
     }
   }

@@ -15,18 +15,19 @@
 // results do not depend on the broad phase.
 //
 // Looking ahead, a pair that does not touch is swept (sweep.hpp) where a moves farther against b than its
-// broad phase's `thin`: what is slower is left to overlap, as ever. Overlaps at seams go last (seams.hpp).
+// broad phase's `thin`; slower pairs are found by their overlap, as without looking ahead. Overlaps at seams go last
+// (seams.hpp).
 namespace rdm {
 namespace {
 
-// By how much two may overlap at the substep's end and still be left to that overlap: m, and of the thinner
-// one's half width.
+// A pair that will overlap by less than this at the end of the substep is not swept, because the overlap will be
+// found then: m, and a share of the thinner one's half width.
 constexpr double kMostShallow = 1.5e-3, kShallowShare = 0.25;
-constexpr double kComing = -1e-12;  // m, the depth of a point to come that is there already
+constexpr double kComing = -1e-12;  // m, depth given to a coming point that touches already (it must be < 0)
 
-// What a sweep stopped in the last substep overlaps a little where the two met first: at one end of an edge,
-// while the other end is still to come. Such a pair is swept again, or it would turn about that one point and
-// pass. (A plane has no far side.)
+// A pair that a sweep stopped in the last substep overlaps a little where the two met first: at one end of an edge,
+// say, while the other end has not arrived yet. Such a pair is swept again; otherwise it would rotate about that one
+// point and pass through. (Nothing passes through a plane, which has no far side.)
 bool barely_touch(const dContactGeom* points, int n) {
   return std::all_of(points, points + n, [](const dContactGeom& p) { return p.depth <= kBarely; });
 }

@@ -337,9 +337,9 @@ void list_laws(Scene* scene) {
   if (scene->laws.empty()) scene->pair_laws = {};
 }
 
-// What a heap of convex things comes to: three neighbours for each shape of a body (a neighbour counts the
-// other way too, so that there are six), one for each that belongs to a robot, none where no pair is; and
-// at least what scenes have by default.
+// The number of contact points of a heap of convex shapes: three neighbours for each shape of a body (each neighbour
+// has it as one too, so there are six), one for each shape of a robot, none for shapes without pairs; at least the
+// default of scenes.
 int32_t contacts_needed(const Scene& scene) {
   constexpr int32_t kOfBody = 3, kOfRobot = 1;
   Vector<int32_t> partners(scene.shapes.size());

@@ -170,8 +170,8 @@ void OdeLinks::make_joint(dWorldID world, int32_t i, const LinkState& state) {
     const Vec3 &one = parent_first ? outer : axis, &two = parent_first ? axis : outer;
     dJointAttach(id, parent_first ? parent_body : child_body, parent_first ? child_body : parent_body);
     dJointSetUniversalAnchor(id, p.x, p.y, p.z);
-    // ODE takes a frame from both axes at each call and reads rubbish while they are parallel, as a new
-    // joint's other axis may be: the first one goes by a direction between.
+    // ODE computes a frame from both axes at each call, which fails while they are parallel; the other axis of a new
+    // joint may be parallel to the first one. The first axis is therefore set by way of a direction between the two.
     const Vec3 between = one + two + cross(one, two);
     dJointSetUniversalAxis1(id, between.x, between.y, between.z);
     dJointSetUniversalAxis2(id, two.x, two.y, two.z);
@@ -329,8 +329,8 @@ void OdeLinks::note_momentum(int32_t articulation, const LinkState& state) {
   now.angular -= h * (push.torque + cross(arm, push.force));
 }
 
-// The whole robot takes the rest as one rigid body, all joints as they are, and its centre of mass is where the solver's
-// bodies have theirs.
+// The rest of the motion is applied to the whole robot as one rigid body with its joints fixed; its centre of mass
+// is where that of the solver's bodies is.
 void OdeLinks::restore_momentum(int32_t articulation, const LinkState& state) const {
   if (!bases_[articulation].body) return;
   const Momentum now = momentum(articulation, state);

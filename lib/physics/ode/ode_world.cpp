@@ -11,7 +11,7 @@
 namespace rdm {
 namespace {
 
-constexpr int32_t kMaxOdeIterations = 8;  // more would draw from a process-wide seed
+constexpr int32_t kMaxOdeIterations = 8;  // with more, ODE shuffles rows by a process-wide random seed
 constexpr double kTurnTolerance = 1e-6;   // between a saved quaternion and its matrix
 
 // What the solver's working memory is taken for: a purpose of its own, because it serves all worlds that
@@ -72,7 +72,7 @@ void OdeWorld::destroy() {
   contact_.destroy();
   if (in_solver_) dWorldCleanupWorkingMemory(ode_);  // a partner takes its own
   if (ode_) dWorldDestroy(ode_);
-  if (in_solver_)  // jobs that will never be done: ODE must not see them
+  if (in_solver_)  // an error left the solver: its unfinished jobs are dropped before ODE looks at them
     blocks_->release(this);
   else if (threading_)
     dThreadingFreeImplementation(threading_);
@@ -82,7 +82,7 @@ void OdeWorld::make_world(const OdeWorld* partner) {
   const SolverDef& solver = scene_->def.solver;
   ode_ = dWorldCreate();
   make_threading();
-  // The prewarming step asks for the most that is ever needed: reserves on top of it would lie idle.
+  // no reserve: the prewarming step already takes the largest amount that is ever needed
   const dWorldStepReserveInfo reserve = {sizeof reserve, 1.0f, 4096};
   const dWorldStepMemoryFunctionsInfo memory = {sizeof memory, take_working_memory, shrink_working_memory,
                                                 free_working_memory};
@@ -325,8 +325,8 @@ void OdeWorld::fly() {
   }
 }
 
-// After a throw through the solver. Its jobs point into a stack that is gone and the memory it worked in is
-// lost to it: both are given up and made anew.
+// Repairs ODE after an exception went through its solver. Its jobs point into a stack that no longer exists, and it
+// has lost its working memory: both are dropped and made again.
 void OdeWorld::restart_solver() {
   dWorldCleanupWorkingMemory(ode_);
   dWorldSetStepThreadingImplementation(ode_, nullptr, nullptr);
@@ -409,7 +409,7 @@ bool OdeWorld::substep(double weight) {
   return true;
 }
 
-// Back to the last poses that were good, at rest: the world stays usable and is still marked.
+// After a divergence: back to the last finite poses, at rest. The world stays usable and keeps its status bit.
 void OdeWorld::recover() {
   status_ |= kStatusDiverged;
   num_contacts_ = 0;
@@ -478,8 +478,8 @@ double OdeWorld::joint_drift() const {
   return tree_.drift(*scene_);
 }
 
-// ODE renormalises a quaternion that is set and derives the matrix from it; both are kept as they are, or
-// the last bit would change.
+// dBodySetQuaternion normalises again and computes the matrix, which changes last bits. Quaternion and matrix are
+// therefore restored as they were saved.
 struct OdeWorld::BodyState {
   Vec3 p;
   Quat q;
