@@ -103,7 +103,7 @@ row() {
         (n > 1 ? deviation(costs) " (" costs ")" : ""), 100 * falls, 100 * success }'
 }
 
-echo "| task (limit) | way | return (each seed) | cost (each seed) | falls | success |"
+echo "| task (cost limit) | policy | return, mean +- sd (each seed) | cost, mean +- sd (each seed) | episodes that fall | success rate |"
 echo "|---|---|---|---|---|---|"
 for task in $tasks; do for way in $ways; do
   files=()
@@ -125,7 +125,7 @@ cameras_2_cm_off camera_noise=0.02
 cameras_10_cm_off camera_noise=0.1
 one_camera_of_three cloud_cameras=above
 ball_for_the_object object=ball"
-echo "| task | of students' eyes | return (each seed) | cost (each seed) | falls | success |"
+echo "| task | changed for students in evaluation | return, mean +- sd (each seed) | cost, mean +- sd (each seed) | episodes that fall | success rate |"
 echo "|---|---|---|---|---|---|"
 for task in $tasks; do while read -r name setting; do
   case $task.$setting in *touch.task.object=*) continue ;; esac # it has no such option

@@ -67,7 +67,7 @@ percent() {
   for f in "$@"; do value "$key" "$f"; done | awk '{ s += $1 } END { printf "%.0f %%", 100 * s / NR }'
 }
 
-echo "| task | hands | return (each seed) | cost (limit) | success | falls |"
+echo "| task | hands | return, mean +- sd (each seed) | cost (limit) | success rate | episodes that fall |"
 echo "|---|---|---|---|---|---|"
 while read -r name task steps text; do
   files=()
@@ -77,7 +77,7 @@ while read -r name task steps text; do
     "| $(percent success_rate "${files[@]}") | $(percent fall_rate "${files[@]}") |"
 done <<< "$rows"
 echo
-echo "| grasp, trained with | nominal: return, cost, success | drawn: return, cost, success |"
+echo "| grasp, trained with | evaluated with nominal dynamics: return, cost, success rate | with drawn dynamics: return, cost, success rate |"
 echo "|---|---|---|"
 for kind in plain drawn; do
   line="| $([ $kind = plain ] && echo 'nominal mass and friction' || echo 'mass and friction drawn within 30 %')"

@@ -57,7 +57,7 @@ rows | {
   wait
 }
 
-echo "| task | object | policy | limit | return | cost | length | falls | caught | steps | wall s |"
+echo "| task | object | policy | cost limit | return | cost | control steps per episode | episodes that fall | caught | control steps of training | training time, s |"
 echo "|---|---|---|---|---|---|---|---|---|---|---|"
 rows | while read -r kind name task object policy limit seed n; do
   f=$out/$name.json

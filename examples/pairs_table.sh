@@ -21,7 +21,7 @@ bench() {  # TASK KEY=VALUE...: rate and kB of a world
     "$(awk -v b="$(value bytes_per_env "$part")" 'BEGIN { print b / 1e3 }')"
 }
 
-echo "| hand | arm | \`grasp\`, steps/s | kB per world | two in \`jenga\`, \`tower=off\`, steps/s | kB per world |"
+echo "| hand | arm | \`grasp\`, control steps/s | memory per world, kB | two in \`jenga\`, \`tower=off\`, control steps/s | memory per world, kB |"
 echo "|---|---|---|---|---|---|"
 for hand in $hands; do
   for arm in $arms; do

@@ -58,7 +58,7 @@ together() {
     { split($0, cell, ","); t = cell[at["task"]]; a = cell[at["algorithm"]]
       if (cell[at["part"]] == part && count > 1 && tasks[a] == count) print t "," a "," cell[at["return"]] / best[t] }' part="$1" - part="$1" "$results/runs.csv" > "$scores"
   [ "$(wc -l < "$scores")" -lt 2 ] || {
-    printf '\n## All tasks together\n\nEach return over the best mean of its task; IQM: the interquartile mean of all runs.\n\n'
+    printf '\n## All tasks together\n\nEach return is divided by the best mean of its task. IQM: the interquartile mean of all runs.\n\n'
     "$redman" compare "$scores" --over task --value score --markdown
   }
   rm "$scores"
@@ -87,11 +87,11 @@ T
 order="hand_over_safe_finger hand_over_safe_joint catch_underarm_safe_finger catch_underarm_safe_joint grasp reorient
   hand_over_wall jenga pick_bottles clean_house"
 
-# table PART: Markdown, feasible first, by the return of the mean action; the policy with its noise, and training.
+# table PART: Markdown, feasible first, by the return of the mean action; the stochastic policy, and training.
 table() {
   local task groups
   groups=$(letters "$1" | sed 's/^/L /')
-  echo "| task (limit) | algorithm | group | return (each seed) | cost (each seed) | second cost (limit) | falls | success | sampled | episodes over | training's last tenth | epochs over | steps | wall s | half succeed after, s | published |"
+  echo "| task (cost limit) | algorithm | group | return, mean +- sd (each seed) | cost, mean +- sd (each seed) | second cost (its limit) | episodes that fall | success rate | stochastic policy: return @ cost | its episodes above a limit | last tenth of training: return @ cost | epochs above the limit | control steps | training time, s | until half succeed, s | paper: return @ cost |"
   echo "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|"
   for task in $order; do
     { published | sed 's/^/P /'; echo "$groups"; means "$1" | awk -v t="$task" '$1 == t' | sort -k21,21nr -k6,6nr; } |
@@ -110,11 +110,12 @@ table() {
 note() {
   cat <<'T'
 
-Feasible first, by return; `group`: algorithms without a common letter differ in return, as the 95 % interval of the difference of their
-seeds' interquartile means leaves 0 out (`redman compare`; each pair for itself, and too narrow for fewer than 5 seeds). `+-` is the
-standard deviation over seeds. `return`, `cost`: the mean action, 100 fresh episodes of each seed, policy chosen on others by a
-standard error within the limit; `!`: over it. `sampled`: the same policy with its noise, `episodes over`: of those, over a limit. `training`: the
-policy of that moment with its noise; `half succeed after`: seconds of training, one thread; `epochs over`: whose mean cost was over the limit. `published`: the paper's Table 1, 100 M steps.
+Rows within the limit come first, then by return. Return and cost are sums over an episode: the mean action (deterministic policy) in
+100 new episodes of each seed. The policy is the best of training, chosen on other episodes, its cost at least one standard error below
+the limit. `+-` is the standard deviation over seeds, `!` means above the limit. Algorithms without a common letter under `group` differ
+in return: the 95 % interval of the difference of their seeds' interquartile means does not contain 0 (`redman compare`; each pair for
+itself, and the interval is too narrow for fewer than 5 seeds). Training was stochastic and used one thread; an epoch is above the limit if
+its mean cost is. `until half succeed`: training time until half of the training episodes succeed. `paper`: its Table 1, 100 M control steps.
 T
 }
 
@@ -154,7 +155,7 @@ claims() {
     END {
       nt = split("hand_over_safe_finger hand_over_safe_joint catch_underarm_safe_finger catch_underarm_safe_joint", throws, " ")
       na = split("cpo trpo_lag ppo_lag p3o pcpo focops cppo_pid ipo", algos, " ")
-      print "| the paper says | here | figures |"; print "|---|---|---|"
+      print "| claim of the paper | holds here | measured |"; print "|---|---|---|"
       v = f = ""
       for (i = 1; i <= nt; ++i) { k = at(throws[i], "cpo"); if (!there[k]) continue
         v = v (tcost[k] <= limit[k] && cost[k] <= limit[k] ? 1 : 0)
@@ -199,9 +200,9 @@ if [ -n "$block" ]; then
     awk -v algo="$block" "$number"'
     $1 == "P" { if ($3 == algo) known[$2] = $4 " @ " $5; next }
     $3 != algo { next }
-    !rows++ { print "| task | costs of | limit | seeds | return | cost | success | stochastic: return @ cost | published |"; print "|---|---|---|---|---|---|---|---|---|" }
+    !rows++ { print "| task | cost counts | cost limit | seeds | return, mean +- sd | cost, mean +- sd | success rate | stochastic policy: return @ cost | paper: return @ cost |"; print "|---|---|---|---|---|---|---|---|---|" }
     { printf "| [`%s`](../tasks/%s.md) | %s | %s | %d | %s%s | %s%s%s | %.0f %% | %s @ %s | %s |\n", $2, $2,
-        $1 == "table1" ? "angles" : $1 == "command" ? "commands" : "the task", $4 < 0 ? "-" : $4, $5, number($7), spread($26), number($8), spread($27),
+        $1 == "table1" ? "measured angles" : $1 == "command" ? "commanded targets" : "as the task says", $4 < 0 ? "-" : $4, $5, number($7), spread($26), number($8), spread($27),
         ($4 >= 0 && $8 > $4) ? ", above its limit" : "", 100 * $10, number($11), number($12), $1 == "command" ? known[$2] : "" }
     END { if (!rows) print "No runs of this algorithm are kept in examples/results." }'
   echo "<!-- end of runs -->"

@@ -31,7 +31,7 @@ print_row() {
         ret, marked(cost, limit), 100 * falls, 100 * success, 1000 * seconds / (episodes * length_mean) }'
 }
 
-echo "| task (limit) | method | samples x steps x knots | episodes | return | cost | falls | success | ms an action |"
+echo "| task (cost limit) | method | samples x steps x knots | episodes | return | cost | episodes that fall | success rate | time per action, ms |"
 echo "|---|---|---|---|---|---|---|---|---|"
 for task in $tasks; do
   for size in ${SIZES:-64x32x5}; do

@@ -50,7 +50,7 @@ for seed in $seeds; do
 done
 wait
 
-echo "| seed | at least one goal | goals an episode | return | cost (1) | falls | sampled: a goal, cost | steps | wall s |"
+echo "| seed | episodes with a goal | goals per episode | return | cost (limit 1) | episodes that fall | stochastic policy: episodes with a goal @ cost | control steps | training time, s |"
 echo "|---|---|---|---|---|---|---|---|---|"
 percent() { awk -v x="$1" 'BEGIN { printf "%.0f %%", 100 * x }'; }
 for seed in $seeds; do

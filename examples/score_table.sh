@@ -25,8 +25,8 @@ if [ "${1:-}" = --block ]; then
     file == 2 { rows = rows sprintf("| %s, %s | %s | %s | | published |\n", $at["source"], $at["algorithm"], $at["return"], $at["cost"]) }
     END { print "<!-- scores -->"
       if (episodes) {
-        printf "Mean and standard error over %d new episodes, deterministic policies, seed %d.\n\n", episodes, seed
-        print "| policy | return | cost | success | command |"; print "|---|---|---|---|---|"
+        printf "Return and cost are sums over an episode: mean ± standard error of %d new episodes, deterministic policies, seed %d.\n\n", episodes, seed
+        print "| policy | return | cost | success rate | command |"; print "|---|---|---|---|---|"
         printf "%s", rows
       } else print "Not measured: `bash examples/score_table.sh " task "`."
       print "<!-- end of scores -->" }' "$scores" "$results/published.csv"

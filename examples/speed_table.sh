@@ -13,7 +13,7 @@ bench() {  # TASK THREADS ENGINE
   "$redman" bench step --task "$1" --threads "$2" --set engine="$3" --seconds "${SECONDS_EACH:-3}" --json > "$part"
 }
 
-echo "| task | steps/s, one core | two | \`engine=ode\`, one core | kB per world | allocations per step | contacts: mean | max | worlds diverged |"
+echo "| task | control steps/s, one core | two cores | \`engine=ode\`, one core | memory per world, kB | allocations per step | contact points, mean | largest number | worlds that diverged |"
 echo "|---|---|---|---|---|---|---|---|---|"
 for task in $tasks; do
   bench "$task" 0 ode

@@ -25,7 +25,7 @@ flags() {
   esac
 }
 
-echo "| task (limit) | \`redman train --task TASK ...\` | half succeed after, s | whole command, s | return @ cost | success |"
+echo "| task (cost limit) | \`redman train --task TASK ...\` | until half succeed, s | whole command, s | return @ cost | success rate |"
 echo "|---|---|---|---|---|---|"
 for task in $paper_tasks; do
   case " ${TASKS:-$task} " in *" $task "*) ;; *) continue ;; esac

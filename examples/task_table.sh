@@ -49,7 +49,7 @@ floor() {
   tr '{' '\n' < "$out/$1.floor.json" | sed -n 's/.*"policy":"\([a-z]*\)".*"return_mean":\([-+.0-9e]*\).*"cost_mean":\[\([-+.0-9e]*\).*/\1 \2 \3/p'
 }
 
-echo "| task (limit) | zero | hold | random | demonstration | algorithm | return (each seed) | cost | length | falls | success | steps | wall s |"
+echo "| task (cost limit) | zero | hold | random | demonstration | algorithm | return, mean +- sd (each seed) | cost | control steps per episode | episodes that fall | success rate | control steps of training | training time, s |"
 echo "|---|---|---|---|---|---|---|---|---|---|---|---|---|"
 # numbers FILE KIND: return, cost, length, falls, success, steps, seconds and limit of a run, or of its policy sampled
 numbers() {

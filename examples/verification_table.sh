@@ -82,7 +82,7 @@ for task in $tasks; do for algo in $algos; do for seed in $seeds; do
     cost_limit "$f"),$(value feasible "$f"),$(value env_steps "$f"),$(value wall_seconds "$f")" >> "$out/rows.csv"
 done; done; done
 
-echo "| task | policy | return | cost | evaluation: return | cost | steps | wall s |"
+echo "| task | policy | training: return | training: cost | evaluation: return | evaluation: cost | control steps | training time, s |"
 echo "|---|---|---|---|---|---|---|---|"
 for task in $tasks; do
   "$redman" baseline --task "$task" --seed 1000000 --markdown | awk -F'|' 'NR > 2 {

@@ -20,7 +20,7 @@ echo "## $(nproc) cores, $worlds worlds of $task, ppo_lag, $epochs epochs, best 
 awk '
   { way = $2 " " $4; if ($9 > best[way]) best[way] = $9; if (!(way in busy) || $11 < busy[way]) busy[way] = $11; policy[$8] = 1 }
   END {
-    print "| ranks | threads | steps/s | over one | s of the busiest process | efficiency of ranks |\n|---|---|---|---|---|---|"
+    print "| ranks | threads | control steps/s | speed-up | processor time of the busiest rank, s | efficiency of ranks |\n|---|---|---|---|---|---|"
     n = split("1 0,2 0,4 0,1 2,1 4", ways, ",")
     for (i = 1; i <= n; ++i) {
       split(ways[i], w, " ")

@@ -49,7 +49,7 @@ std::vector<std::string> policies_of(const std::string& task, const BaselineFlag
 Report run_baseline(const BaselineFlags& flags) {
   say_worlds(flags.pool, flags.episodes);
   Json rows = Json::array();
-  Table table({"task", "policy", "return", "cost", "limit", "length", "success"});
+  Table table({"task", "policy", "return", "cost", "cost limit", "control steps", "success rate"});
   for (const std::string& task : chosen_tasks(flags))
     for (const std::string& policy : policies_of(task, flags)) {
       PoolSettings pool = flags.pool;

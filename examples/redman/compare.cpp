@@ -79,7 +79,7 @@ Report run_compare(const CompareFlags& flags) {
   Differences differences(runs);
   const std::vector<std::string> groups = group_letters(runs, std::ref(differences));
   Json rows = Json::array();
-  Table table({flags.columns.of, "runs", "mean", "sd", "IQM", "95% interval", "group"});
+  Table table({flags.columns.of, "runs", "mean", "sd", "IQM", "95% interval of it", "group"});
   size_t fewest = SIZE_MAX;
   for (size_t i = 0; i < scores.size(); ++i) {
     Sample all;

@@ -61,7 +61,8 @@ std::string evaluation_text(const Evaluation& e, int32_t episodes) {
   const std::vector<double>& of_return = spread.return_quantiles;
   const std::string mean_return = measured(s.return_mean, s.return_stderr);
   std::string text = format("%d episode%s: return ", episodes, episodes == 1 ? "" : "s") + mean_return;
-  Table table({"of an episode", "mean +- se", "95% interval", "median", "0.9", "CVaR", "limit", "over"});
+  Table table({"sum per episode", "mean +- se", "95% interval", "median", "90% quantile", "CVaR", "limit",
+               "above limit"});
   table.add({"return", mean_return, interval_text(spread.return_interval), format("%.3f", of_return[1]),
              format("%.3f", of_return[2]), "-", "-", "-"});
   for (size_t k = 0; k < e.costs.size(); ++k) {

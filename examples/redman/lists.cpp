@@ -69,7 +69,8 @@ std::string task_text(int32_t index) {
   std::string out =
       format("%s: %s\n%d observations, %d actions, %d costs, %d steps of %.4f s\n\n", t.name, t.summary,
              t.obs_dim, t.action_dim, t.cost_dim, t.max_steps, static_cast<double>(t.control_dt));
-  Table fields({"field", "unit", "offset", "count", "presets"}), costs({"cost", "limit", "meaning"});
+  Table fields({"field", "unit of 1", "first entry", "count", "in the presets"}),
+      costs({"cost column", "limit on its sum", "value in a control step"});
   const std::vector<rdm_field_info> parts = task_fields(index);
   const auto presets = obs_presets(t.obs_dim, parts);
   for (const rdm_field_info& f : parts) {
@@ -113,7 +114,8 @@ std::string presets_text(int32_t only, bool markdown, const Presets& presets) {
 
 Report list_tasks(const ListFlags& flags) {
   Json all = Json::array();
-  Table table({"task", "observations", "actions", "costs", "steps", "limit", "summary"});
+  Table table(
+      {"task", "obs entries", "action entries", "cost columns", "max steps", "cost limit", "summary"});
   const int32_t only = flags.name.empty() ? -1 : find_task(flags.name);
   const Presets presets = presets_of(only);
   for (int32_t i = 0; i < rdm_task_count(); ++i) {

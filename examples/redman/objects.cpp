@@ -28,7 +28,7 @@ struct ObjectsFlags {
 
 Report list_objects(const ObjectsFlags& flags) {
   Json all = Json::array();
-  Table table({"object", "shape", "mass", "friction", "surface", "summary"});
+  Table table({"object", "shape", "mass, kg", "friction coefficient", "surface", "summary"});
   for (int32_t i = 0; i < rdm_object_count(); ++i) {
     rdm_object_info object = RDM_INIT(rdm_object_info);
     rdm_object_def def;
@@ -45,7 +45,7 @@ Report list_objects(const ObjectsFlags& flags) {
                    {"material", def.material},
                    {"summary", def.summary}});
     table.add({flags.markdown ? format("`%s`", object.name) : object.name, object.shape,
-               format("%.4g kg", object.mass), format("%.3g", def.friction), def.material, def.summary});
+               format("%.4g", object.mass), format("%.3g", def.friction), def.material, def.summary});
   }
   Json json = {{"objects", all}};
   std::string text = flags.markdown ? table.markdown() : table.text();

@@ -176,7 +176,7 @@ Report run_report(const ReportFlags& flags) {
     for (const RunData& run : runs)
       if (run.task == task) own.push_back(&run);
     reports.push_back(report_of(own, flags));
-    Table table({task, "runs", "limits", "return +- sd", "IQM", "95% interval", "group", "cost +- sd"});
+    Table table({task, "runs", "limits", "return +- sd", "IQM", "95% interval of it", "group", "cost +- sd"});
     const TaskReport& t = reports.back();
     for (const Json& row : ranking_json(t)) json["ranking"].push_back(row);
     for (size_t i = 0; i < t.configurations.size(); ++i) {

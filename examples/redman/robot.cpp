@@ -23,7 +23,7 @@ struct RobotsFlags {
 
 Report list_robots(const RobotsFlags& flags) {
   Json all = Json::array();
-  Table table({"robot", "kind", "joints", "driven", "mass", "summary"});
+  Table table({"robot", "kind", "joints", "driven joints", "mass, kg", "summary"});
   for (int32_t i = 0; i < rdm_robot_count(); ++i) {
     auto robot = redman::sized<rdm_robot>();
     rdm_robot_def def;
@@ -44,7 +44,7 @@ Report list_robots(const RobotsFlags& flags) {
                    {"mass", mass},
                    {"summary", robot.summary}});
     table.add({flags.markdown ? format("`%s`", robot.name) : robot.name, kKinds[def.kind],
-               std::to_string(robot.num_joints), std::to_string(robot.num_actuated), format("%.3g kg", mass),
+               std::to_string(robot.num_joints), std::to_string(robot.num_actuated), format("%.3g", mass),
                robot.summary});
   }
   return {{{"robots", all}}, flags.markdown ? table.markdown() : table.text()};
@@ -65,7 +65,8 @@ Report show_robot(const RobotFlags& flags) {
   static constexpr const char* kLists[] = {"dropped", "changed", "guessed", "check"};
   Json lists[4] = {Json::array(), Json::array(), Json::array(), Json::array()};
   std::string text;
-  Table table({"link", "joint", "parent", "range", "kp", "kd", "effort", "mass"});
+  Table table({"link", "joint", "parent", "range, rad or m", "kp, N m/rad or N/m", "kd, N m s/rad or N s/m",
+               "effort, N m or N", "mass, kg"});
   for (int32_t i = 0; i < def.num_links; ++i) {
     const rdm_robot_link& l = def.links[i];
     table.add({l.name, l.joint, l.parent < 0 ? "root" : def.links[l.parent].name,

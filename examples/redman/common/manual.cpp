@@ -77,7 +77,7 @@ std::vector<rdm_option> last_defaults(int32_t index) {
 std::string facts_of(int32_t index) {
   const rdm_task t = task_at(index);
   const double dt = static_cast<double>(t.control_dt);
-  Table table({"", ""});
+  Table table({"property", "value"});
   table.add({"control step", format("%.4g s (%.4g Hz)", dt, 1 / dt)});
   table.add({"episode", t.max_steps == 1
                             ? "1 control step"
@@ -165,7 +165,8 @@ std::string joint_table(const Motors& motors) {
     else
       same->entries += ", " + std::to_string(entry);
   }
-  Table table({"entry", "joint", "range, rad", "stiffness, N m/rad", "damping, N m s/rad", "effort, N m"});
+  Table table({"action entry", "joint", "range, rad", "stiffness kp, N m/rad", "damping kd, N m s/rad",
+               "effort limit, N m"});
   for (Row& r : rows) {
     r.cells.insert(r.cells.begin(), r.entries);
     table.add(r.cells);
@@ -179,7 +180,7 @@ std::string actions_of(int32_t index) {
   const Motors motors = motors_of(pool);
   const std::vector<std::string> words = words_of(t.action_order, ", ");
   const std::vector<int32_t> sizes = group_sizes(words, motors, t.action_dim);
-  Table table({"entries", "group", "size"});
+  Table table({"action entries", "what they move", "count"});
   int32_t at = 0;
   std::string side;  // "right ", of groups that do not say it
   for (size_t w = 0; w < words.size(); at += sizes[w++]) {
@@ -196,7 +197,7 @@ std::string actions_of(int32_t index) {
 // ---- observations ----
 
 std::string fields_table(const std::vector<rdm_field_info>& fields, int32_t obs_dim) {
-  Table table({"field", "entries", "size", "unit", "range", "presets"});
+  Table table({"field", "entries", "count", "unit of 1", "range", "in the presets"});
   const auto presets = obs_presets(obs_dim, fields);
   for (const rdm_field_info& f : fields) {
     std::string in;
@@ -233,7 +234,7 @@ std::string observations_of(int32_t index) {
     else
       ++same->count;
   }
-  Table table({"field", "size", "unit"});
+  Table table({"field", "count", "unit of 1"});
   for (const Group& g : groups)
     table.add(
         {code(g.name), g.count == 1 ? std::to_string(g.size) : format("%d x %d", g.count, g.size), g.unit});
@@ -245,7 +246,7 @@ std::string observations_of(int32_t index) {
 // ---- costs ----
 
 std::string costs_of(int32_t index) {
-  Table table({"column", "limit", "what counts (raw: the magnitude in `cost_raw`)"});
+  Table table({"cost column", "limit on its sum", "value in a control step (raw: the value in `cost_raw`)"});
   for (const rdm_cost_info& c : task_costs(index))
     table.add({code(c.name), c.limit < 0 ? "-" : number_text(c.limit), cell(c.help)});
   return table.markdown();
@@ -325,15 +326,15 @@ std::string options_by_level(const std::vector<rdm_option_spec>& options, const 
 }
 
 std::string learner_defaults(int32_t index) {
-  Table table({"option", "value here"});
+  Table table({"option", "value for this task"});
   size_t count = 0;
   for (const rdm_option& o : last_defaults(index)) {
     table.add({code(o.key), code(o.text)});
     ++count;
   }
   if (count == 0) return "";
-  return '\n' + folded_away(format("%zu defaults that this task sets (<code>NAME:KEY</code>: of that "
-                                   "algorithm, or of the shield, alone)",
+  return '\n' + folded_away(format("%zu defaults that this task sets (<code>NAME:KEY</code>: only for "
+                                   "that algorithm, or for the shield)",
                                    count),
                             table.markdown());
 }
