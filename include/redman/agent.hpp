@@ -7,7 +7,7 @@
 
 namespace redman {
 
-// The defaults of rdm_agent_config_init with the dimensions of a world of the host's own.
+// The defaults of rdm_agent_config_init, with the dimensions of an environment of your own.
 inline rdm_agent_config agent_config(int32_t obs_dim, int32_t action_dim, int32_t num_envs) {
   rdm_agent_config c;
   check(rdm_agent_config_init(&c, sizeof c));
@@ -16,7 +16,7 @@ inline rdm_agent_config agent_config(int32_t obs_dim, int32_t action_dim, int32_
   c.num_envs = num_envs;
   return c;
 }
-// The same as rdm_agent_config_for_pool fills it; arrays are borrowed from the pool.
+// The same, filled by rdm_agent_config_for_pool; arrays are borrowed from the pool.
 inline rdm_agent_config agent_config(const Pool& pool) {
   auto c = agent_config(0, 0, 0);
   check(rdm_agent_config_for_pool(&c, pool.get()));
@@ -26,7 +26,7 @@ inline rdm_agent_config agent_config(const Pool& pool) {
 class Agent {
  public:
   explicit Agent(const rdm_agent_config& config) : handle_(made(rdm_agent_create, &config)) {}
-  // Takes over an agent that was made otherwise.
+  // Takes ownership of an agent that was made by the C functions.
   explicit Agent(rdm_agent* agent) : handle_(agent) {}
   rdm_agent* get() const { return handle_.get(); }
   void act(const float* obs, int32_t mode, float* action) {
@@ -41,7 +41,7 @@ class Agent {
     check(rdm_agent_update(get(), last_obs, &e));
     return e;
   }
-  // The same in slices: begin, then slices until one is the last; epoch, if given, tells of it.
+  // The same in slices: begin, then slices until one is the last; epoch, if given, is filled then.
   void update_begin(const float* last_obs) { check(rdm_agent_update_begin(get(), last_obs)); }
   bool update_slice(int32_t units, rdm_epoch* epoch = nullptr) {
     int32_t done = 0;

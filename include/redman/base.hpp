@@ -86,8 +86,7 @@ T* made(rdm_result (*create)(T**, Args...), Args... args) {
 
 using Bytes = std::vector<unsigned char>;
 
-// A text of the library's that is asked for its size first: rdm_pool_get_settings,
-// rdm_agent_get_settings.
+// A text of a function that is called for its size first, such as rdm_pool_get_settings.
 template <class T>
 std::string text_of(rdm_result (*write)(const T*, char*, size_t, size_t*), const T* handle) {
   size_t size = 0;
@@ -98,7 +97,7 @@ std::string text_of(rdm_result (*write)(const T*, char*, size_t, size_t*), const
   return text;
 }
 
-// Bytes that are asked for their size first: a state, a policy file.
+// Bytes of a function that is called for their size first: a state, a policy file.
 template <class T>
 Bytes bytes_of(rdm_result (*write)(const T*, void*, size_t, size_t*), const T* handle) {
   size_t size = 0;

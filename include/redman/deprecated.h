@@ -1,4 +1,5 @@
-/* redman/deprecated.h: the names of 0.1, and some since. Each is, or calls, what its warning names.
+/* redman/deprecated.h: the names of 0.1, and some since. Each is, or calls, the new name that its
+ * warning gives.
  *
  * Included by redman.h and import.h unless RDM_NO_DEPRECATED is defined; it goes with 1.1. The
  * symbols of 0.1 stay in the library as long as RDM_ABI: capi/stubs.awk writes them from the
@@ -13,15 +14,15 @@ extern "C" {
 #endif
 
 typedef struct rdm_option_info { /* frozen layout: one row of an option table */
-  const char *key;          /* static; its last word FIELD: any name of a field, or a pattern
-                             * with '*' */
+  const char *key;          /* static; a last word FIELD stands for the name of any field, or a
+                             * pattern with '*' */
   const char *help;         /* one line, with the unit                                        */
-  const char *text;         /* default of a text option, or of a number that is a range, else
-                             * NULL */
-  const char *choices;      /* text: allowed words "a|b|c", NULL: any; number, integer: "a..b":
-                             * takes a range "0.7..1.3" too, which each world draws from at a
-                             * reset; else NULL */
-  double number;            /* default of number, integer, flag; of a range its middle        */
+  const char *text;         /* default of a text option, or of a number whose default is a range;
+                             * else NULL */
+  const char *choices;      /* text: the allowed words "a|b|c", NULL: any text; number, integer:
+                             * "a..b" where a range "0.7..1.3" is allowed too, from which each world
+                             * draws at a reset; else NULL */
+  double number;            /* default of a number, integer or flag; for a range, its middle  */
   double low, high;         /* inclusive bounds                                               */
   int32_t kind;             /* RDM_KIND_NUMBER, RDM_KIND_INTEGER, RDM_KIND_FLAG, RDM_KIND_TEXT */
   int32_t live;             /* flag: rdm_agent_set_option may change it after creation */
@@ -36,8 +37,8 @@ typedef struct rdm_camera { /* frozen layout */
   float eye[3];             /* m, in the frame that mount names                               */
   float target[3];          /* m, likewise; the picture's centre looks from eye to target     */
   float fov_y;              /* rad, vertical field of view                                    */
-  int32_t mount;            /* 0: the world's frame; k > 0: of link k - 1 of the scene; -k: of
-                             * the base of its articulation k - 1 (cameras that ride on a robot) */
+  int32_t mount;            /* what it is fixed to; 0: the world; k > 0: link k - 1 of the scene;
+                             * -k: the base of its articulation (robot) k - 1 */
 } rdm_camera;
 typedef struct rdm_joint {  /* frozen layout */
   const char *name;         /* "FFJ2"                                                         */
@@ -51,9 +52,9 @@ typedef struct rdm_joint {  /* frozen layout */
 typedef struct rdm_object { /* frozen layout: an object by name, for option object=... */
   const char *name;         /* "egg"                                                          */
   const char *shape;        /* "capsule r 0.03, straight part 0.02": kind and sizes in m      */
-  double mass;              /* kg; hull: of the default points, 500 kg/m3                     */
+  double mass;              /* kg; for "hull": of its default points, at 500 kg/m3            */
 } rdm_object;
-typedef struct rdm_shape {   /* frozen layout: what the scene is made of, the same for all worlds */
+typedef struct rdm_shape {   /* frozen layout: a shape of the scene, the same for all worlds */
   const char *name;          /* "right.ff_distal" */
   float size[3];             /* m: radius | radius, half length along z | half sizes (hull: of
                               * its box) */

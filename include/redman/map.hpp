@@ -29,7 +29,7 @@ class Map {
     return i;
   }
   void clear() { check(rdm_map_clear(get())); }
-  // Both give the number of voxels that found no memory.
+  // Both return the number of voxels that found no memory.
   uint64_t insert(const float origin[3], const float* points, size_t count) {
     uint64_t dropped = 0;
     check(rdm_map_insert(get(), origin, points, count, &dropped));
@@ -41,7 +41,7 @@ class Map {
     check(rdm_map_scan(get(), pool.get(), env, camera, w, h, skip.data(), skip.size(), &dropped));
     return dropped;
   }
-  // One point [3] each; the C calls take many.
+  // For one point [3] each; the C functions take many.
   float query(const float point[3]) const {
     float probability = 0;
     check(rdm_map_get_probabilities(get(), point, 1, &probability));
@@ -64,7 +64,7 @@ class Map {
     check(rdm_map_meets(get(), &pose, half, &yes));
     return yes != 0;
   }
-  // True when something is hit; its place is then in hit.
+  // True when an occupied voxel is hit; `hit` is then the point of entry.
   bool raycast(const float origin[3], const float direction[3], float range, float hit[3],
                bool through_unknown = false) const {
     int32_t found = 0;

@@ -30,17 +30,17 @@ class Actor {
  public:
   explicit Actor(const rdm_actor_config& config) : handle_(made(rdm_actor_create, &config)) {}
   rdm_actor* get() const { return handle_.get(); }
-  // action [num_envs][action_dim] of worlds in the mask (null: all), new ones on
-  // obs [num_envs][obs_dim] where they are due; seen: clouds, of a policy that reads points.
+  // Writes action [num_envs][action_dim] of the worlds in the mask (null: all): new decisions on
+  // obs [num_envs][obs_dim] where they are due; seen: clouds for a policy that reads points.
   void act(const float* obs, float* action, const uint8_t* mask = nullptr,
            const rdm_points* seen = nullptr) {
     check(rdm_actor_act(get(), obs, seen, mask, action));
   }
-  // The pool's own rows.
+  // The same for the pool's own rows.
   void act(Pool& pool, const uint8_t* mask = nullptr, const rdm_points* seen = nullptr) {
     act(pool.obs().data(), pool.action().data(), mask, seen);
   }
-  // Episodes begin anew where one of the two [num_envs] is not 0; both null: everywhere.
+  // Begins new episodes where one of the two [num_envs] is not 0; both null: everywhere.
   void reset(const uint8_t* terminated = nullptr, const uint8_t* truncated = nullptr) {
     check(rdm_actor_reset(get(), terminated, truncated));
   }

@@ -8,7 +8,7 @@ extern "C" {
 #endif
 
 typedef struct rdm_policy rdm_policy; /* handle */
-typedef struct rdm_policy_info { /* what a policy file tells of its network */
+typedef struct rdm_policy_info { /* what a policy file says of its network */
   uint32_t struct_size;       /* in: bytes */
   int32_t obs_dim;            /* count */
   int32_t action_dim;         /* count */
@@ -19,28 +19,30 @@ typedef struct rdm_policy_info { /* what a policy file tells of its network */
   uint64_t num_params;        /* of the network */
   const char *task;           /* "" for a host's own environment */
   const char *activation;     /* of the hidden layers: "tanh", "elu", "relu"; static */
-  int32_t num_points;         /* of the cloud beside each row, for rdm_policy_act_points; 0: it
-                               * reads none */
-  int32_t num_point_classes;  /* that it tells points apart by, 0: none */
-  int32_t num_features;       /* that its encoder makes of a cloud, 0 without */
+  int32_t num_points;         /* points of the cloud beside each row, for rdm_policy_act_points; 0:
+                               * it reads no clouds */
+  int32_t num_point_classes;  /* number of classes of points that it distinguishes; 0: none */
+  int32_t num_features;       /* number of features that its encoder computes from a cloud; 0: no
+                               * encoder */
   int32_t point_color;        /* whether it reads the colours of points: 0, 1 */
-  int32_t num_fields;         /* for rdm_policy_field_at; 0: the file says none */
-  int32_t novelty;            /* whether rdm_policy_novelty tells: 0, 1 */
-  uint64_t generation;        /* which network: the low 32 bits are the epochs that its agent had
-                               * learned, the high ones a checksum of it; what was sampled by
-                               * another one is stale. 0: unknown */
+  int32_t num_fields;         /* for rdm_policy_field_at; 0: the file has none */
+  int32_t novelty;            /* whether rdm_policy_novelty is available: 0, 1 */
+  uint64_t generation;        /* which network it is: the low 32 bits are the epochs that its agent
+                               * had learned, the high ones a checksum. Data sampled by another
+                               * generation are stale. 0: unknown */
 } rdm_policy_info;
 RDM_API rdm_result rdm_policy_read(rdm_policy **out, const void *bytes,
                                    size_t size); /* copies bytes [size] */
 RDM_API rdm_result rdm_policy_read_file(rdm_policy **out,
                                         const char *path); /* NOT_FOUND, FORMAT ... */
 /* For programs without a heap: the bytes that rdm_policy_read_in needs for the file bytes [size].
- * Errors as of rdm_policy_read, but for a network that does not give the file's example. */
+ * Errors are those of rdm_policy_read, except that of a network which does not reproduce the file's
+ * example. */
 RDM_API rdm_result rdm_policy_read_memory(const void *bytes, size_t size, size_t *memory);
-/* As rdm_policy_read of bytes [size], which may go at once, into memory [capacity] at any address,
- * which the caller keeps until the policy is destroyed. Nothing is taken from heap or hooks, then
- * or by what is done with the policy later; rdm_policy_get_tensor and calls that fail may take from
- * the heap for a moment. RANGE where capacity is less than rdm_policy_read_memory says. */
+/* As rdm_policy_read of bytes [size], which are not needed afterwards, into memory [capacity] at
+ * any address, which the caller keeps until the policy is destroyed. Neither this call nor later
+ * ones on the policy use heap or hooks, except that rdm_policy_get_tensor and calls that fail may
+ * use the heap for a moment. RANGE where capacity is less than rdm_policy_read_memory says. */
 RDM_API rdm_result rdm_policy_read_in(rdm_policy **out, const void *bytes, size_t size,
                                       void *memory, size_t capacity);
 RDM_API void rdm_policy_destroy(rdm_policy *p);             /* NULL is fine */
@@ -49,53 +51,56 @@ RDM_API size_t rdm_policy_scratch(const rdm_policy *p, int32_t rows); /* bytes f
                                                                        * address; 0: bad
                                                                        * arguments */
 /* One decision, to be held for rdm_policy_info.action_repeat control steps (rdm_actor_act counts
- * them): action [rows][action_dim] = clip(mean + std noise, -1, 1) for obs [rows][obs_dim].
- * noise [rows][action_dim] are the caller's standard normals, NULL: the mean.
- * scratch [scratch_bytes]: rdm_policy_scratch bytes or more, aligned in any way. No heap, no hidden
- * state: any number of threads, each with its own scratch. ARGUMENT when obs or noise is not
- * finite, or so large that the network overflows (action is written then, and of no use). STATE for
- * a policy that reads points. */
+ * them): action [rows][action_dim] = clip(mean + std noise, -1, 1) for obs [rows][obs_dim]. noise
+ * [rows][action_dim] are standard normal numbers of the caller's; NULL: the mean. scratch
+ * [scratch_bytes]: rdm_policy_scratch bytes or more, of any alignment. No heap, no hidden state:
+ * any number of threads, each with its own scratch. ARGUMENT when obs or noise is not finite, or so
+ * large that the network overflows (action is written then, but meaningless). STATE for a policy
+ * that reads points. */
 RDM_API rdm_result rdm_policy_act(const rdm_policy *p, const float *obs, int32_t rows,
                                   const float *noise, float *action, void *scratch,
                                   size_t scratch_bytes);
-/* The same without the clip, as rdm_agent_act samples, so that what was sampled elsewhere can be
- * learned from: action [rows][action_dim] = mean + std noise, and mean [rows][action_dim], for
- * obs [rows][obs_dim] and noise [rows][action_dim], NULL: none. One of action and mean may be NULL.
- * scratch [scratch_bytes] and errors as of rdm_policy_act. */
+/* The same without clipping, as rdm_agent_act samples, so that an agent can learn from decisions
+ * that were sampled elsewhere (rdm_agent_put): action [rows][action_dim] = mean + std noise, and
+ * mean [rows][action_dim], for obs [rows][obs_dim] and noise [rows][action_dim], NULL: none. One of
+ * action and mean may be NULL. scratch [scratch_bytes] and errors as of rdm_policy_act. */
 RDM_API rdm_result rdm_policy_sample(const rdm_policy *p, const float *obs, int32_t rows,
                                      const float *noise, float *action, float *mean,
                                      void *scratch, size_t scratch_bytes);
-/* How far rows are from those that the policy learned on: novelty [rows] of obs [rows][obs_dim].
+/* How far observations are from those of training: novelty [rows] of obs [rows][obs_dim]. About 1
+ * is the most that training saw, and 2 is far from it.
  *
  *   z_j = (x_j - mean_j) / deviation_j, of the m entries x of a row that the policy reads
  *   novelty = max(sqrt(sum of z_j^2 / m) / a, max of |z_j| / b)
  *
- * mean and deviation are the normaliser's, of all rows in training (with options obs_freeze and
- * obs_count_max, of those that it counts), a deviation at least 0.01. One row in a thousand of the
- * last epochs, of 1000 rows or more, had a root mean square above a, one in a thousand a largest
- * above b; of a clone, of its recording. So about 1 is the most that training saw, and 2 is far
- * from it. Not found is what is usual in each entry and unusual together, as a sensor that stands
- * still at a usual value, nor what is unusual of an entry and usual of another one; clouds are not
- * looked at. UNSUPPORTED, and rdm_policy_info.novelty 0, where the file does not tell: of 0.1, of
- * an agent without normalize_obs, or that has not learned from 1000 rows since its statistics
- * were given to it. ARGUMENT when obs is not finite. No heap; any number of threads. */
+ * mean and deviation are those of the normaliser, over all rows in training (with options
+ * obs_freeze and obs_count_max, over those that it counts); a deviation is at least 0.01. Over the
+ * last epochs, of 1000 rows or more (after cloning, over the recording), one row in a thousand had
+ * a root mean square of z above a, and one in a thousand a largest |z| above b. It does not notice
+ * values that are usual one by one and unusual together, such as a sensor that is stuck at a usual
+ * value, nor a value that is unusual for its entry but usual for another; it ignores clouds.
+ * UNSUPPORTED, and rdm_policy_info.novelty 0, where the file lacks these statistics: a file of 0.1,
+ * or of an agent without normalize_obs, or of one that has not learned from 1000 rows since its
+ * statistics were given to it. ARGUMENT when obs is not finite. No heap; any number of threads. */
 RDM_API rdm_result rdm_policy_novelty(const rdm_policy *p, const float *obs, int32_t rows,
                                       float *novelty);
-/* "actor.0.weight" of rows outputs and cols inputs, "actor.log_std" or "actor.log_std_bounds",
- * "normalizer.shift|scale|clip", "example.obs|action". RANGE ends the list. All are over whole rows
- * of obs_dim: a weight of an entry that the policy does not read is 0. Of one that reads points
- * "actor.0.weight" has a column for each feature behind those, and there are "encoder.0.weight" and
- * so on, "encoder.origin" and "encoder.range", in m, "encoder.activation" (0 tanh, 1 elu, 2 relu),
- * "example.points", in m, and "example.point_class". */
+/* Tensor i of the policy: "actor.0.weight" (rows outputs, cols inputs) and so on, "actor.log_std"
+ * or "actor.log_std_bounds", "normalizer.shift|scale|clip", "example.obs|action". RANGE ends the
+ * list. Inputs are whole rows of obs_dim; weights of entries that the policy does not read are 0.
+ * In a policy that reads points, "actor.0.weight" has further columns for the features, and there
+ * are "encoder.0.weight" and so on, "encoder.origin" and "encoder.range", in m,
+ * "encoder.activation" (0 tanh, 1 elu, 2 relu), "example.points", in m, and
+ * "example.point_class". */
 RDM_API rdm_result rdm_policy_tensor_at(const rdm_policy *p, int32_t i, rdm_tensor *out);
 /* Copies the named tensor to out [count]; count must be rows * cols. NOT_FOUND, RANGE. */
 RDM_API rdm_result rdm_policy_get_tensor(const rdm_policy *p, const char *name, float *out,
                                          size_t count);
-/* Part i of a row, whose names are the policy's; bounds are unknown. RANGE ends the list. */
+/* Field i of an observation; its strings live as long as the policy, its bounds are unknown. RANGE
+ * ends the list. */
 RDM_API rdm_result rdm_policy_field_at(const rdm_policy *p, int32_t i, rdm_field_info *io);
-/* OK, or VERSION_MISMATCH with a text that says which field of the spec differs; where rows are of
- * another layout, the first part that differs, if the policy says its parts and a pool of the
- * spec's layout lives. */
+/* Whether the policy fits a pool of this spec: OK, or VERSION_MISMATCH with a text that says which
+ * member of the spec differs. Where the layout differs, the text names the first field that does,
+ * if the policy file lists its fields and a pool of the spec's layout exists. */
 RDM_API rdm_result rdm_policy_check(const rdm_policy *p, const rdm_spec *spec);
 /* Which entries of a row of obs_dim the policy reads (agent option actor_obs), ascending: writes up
  * to capacity of them to columns [capacity]; *count is how many there are. */

@@ -26,7 +26,7 @@ class Policy {
     Bytes scratch(scratch_bytes(rows));
     act(obs, rows, noise, action, scratch.data(), scratch.size());
   }
-  // How far rows are from those of training; novelty [rows].
+  // How far observations are from those of training, to novelty [rows].
   void novelty(const float* obs, int32_t rows, float* novelty) const {
     check(rdm_policy_novelty(get(), obs, rows, novelty));
   }

@@ -21,8 +21,8 @@ typedef struct rdm_task { /* a task with its default options */
   int32_t num_options;      /* for rdm_task_option_at                                         */
   int32_t num_cameras;      /* for rdm_task_camera_at                                         */
   int32_t num_defaults;     /* for rdm_task_default_at                                           */
-  const char *action_order; /* what the entries of the action are: "thrust, turn"; of hands
-                             * groups, "right joints, force, torque"; default options         */
+  const char *action_order; /* what the entries of the action are: "thrust, turn"; for hands groups
+                             * of entries, "right joints, force, torque"; default options */
 } rdm_task;
 typedef struct rdm_cost_info { /* a cost column */
   uint32_t struct_size;     /* in: bytes                                                      */
@@ -33,25 +33,25 @@ typedef struct rdm_cost_info { /* a cost column */
 } rdm_cost_info;
 typedef struct rdm_camera_info { /* a pinhole camera */
   uint32_t struct_size;     /* in: bytes                                                      */
-  int32_t mount;            /* 0: the world's frame; k > 0: of link k - 1 of the scene; -k: of
-                             * the base of its articulation k - 1 (cameras that ride on a robot) */
+  int32_t mount;            /* what it is fixed to; 0: the world; k > 0: link k - 1 of the scene;
+                             * -k: the base of its articulation (robot) k - 1 */
   const char *name;         /* "front"                                                        */
   float eye[3];             /* m, in the frame that mount names                               */
   float target[3];          /* m, likewise; the optical axis runs from eye to target          */
-  float up[3];              /* likewise: what points up in the picture; where it lies along the
-                             * axis, -x of the world does                                     */
-  float fov_y;              /* rad: in pixels, the focal length is half a picture's height /
-                             * tan(fov_y / 2)                                                 */
+  float up[3];              /* likewise: what points up in the picture; where it is parallel to the
+                             * optical axis, -x of the world is used */
+  float fov_y;              /* vertical field of view, rad; the focal length in pixels is half the
+                             * picture's height / tan(fov_y / 2) */
   float cx;                 /* where the optical axis meets the picture: to the right of its
                              * centre, as a share of its width                                */
   float cy;                 /* likewise: below its centre, as a share of its height           */
 } rdm_camera_info;
-RDM_API int32_t rdm_task_count(void); /* one more than the highest number of a task; 0 without the
-                                       * simulation half */
+RDM_API int32_t rdm_task_count(void); /* one more than the highest number of a task; 0 in a build
+                                       * without simulation */
 RDM_API rdm_result rdm_task_at(int32_t index, rdm_task *io); /* NOT_FOUND: destroyed; RANGE: no
                                                               * task had this number */
 RDM_API rdm_result rdm_task_find(const char *name,
-                                 int32_t *index); /* NOT_FOUND: nearest in the text */
+                                 int32_t *index); /* NOT_FOUND: the text offers the nearest */
 RDM_API rdm_result rdm_task_field_at(int32_t task, int32_t i,
                                      rdm_field_info *io); /* default options; i < num_fields */
 RDM_API rdm_result rdm_task_cost_at(int32_t task, int32_t i, rdm_cost_info *io); /* i < cost_dim */
@@ -59,8 +59,8 @@ RDM_API rdm_result rdm_task_option_at(int32_t task, int32_t i,
                                       rdm_option_spec *io); /* i < num_options */
 RDM_API rdm_result rdm_task_camera_at(int32_t task, int32_t i,
                                       rdm_camera_info *io); /* i < num_cameras */
-/* The task's own defaults of agent options, to be given as rdm_agent_config.defaults; "shield:key"
- * is one of shields, which have it from their pool. */
+/* The task's own defaults for options of agents, to be given as rdm_agent_config.defaults. A key
+ * "shield:key" is a default for shields, which read it from their pool. */
 RDM_API rdm_result rdm_task_default_at(int32_t task, int32_t i,
                                        rdm_option *out); /* i < num_defaults */
 
@@ -75,20 +75,22 @@ typedef struct rdm_robot { /* a robot description */
 RDM_API int32_t rdm_robot_count(void); /* as rdm_task_count */
 RDM_API rdm_result rdm_robot_at(int32_t index, rdm_robot *io); /* errors as rdm_task_at */
 RDM_API rdm_result rdm_robot_find(const char *name, int32_t *index); /* name or alias; NOT_FOUND:
-                                                                      * nearest in the text */
+                                                                      * the text offers the
+                                                                      * nearest */
 enum rdm_joint_kind { RDM_JOINT_REVOLUTE = 0, RDM_JOINT_PRISMATIC = 1 };  /* of a joint */
 typedef struct rdm_joint_info { /* a joint of a robot, a scene or a pool's worlds */
   uint32_t struct_size;     /* in: bytes                                                      */
   int32_t kind;             /* RDM_JOINT_*: revolute joints in rad and N m, prismatic in m and N */
   int32_t parent;           /* the joint before it on the way from the base, -1: none         */
-  int32_t action;           /* entry of the action (of a robot, in a scene too: its command) that
-                             * is its own; -1: none, or only the functions of a host's task know */
+  int32_t action;           /* the entry of the action that moves it (of a robot, or in a scene: its
+                             * command); -1: none, or known only to the functions of a host's
+                             * task */
   const char *name;         /* "FFJ2"; of a pool "right_FFJ2"                                 */
   double lower, upper;      /* range, rad (m)                                                 */
   double velocity;          /* how fast its drive's target may move, rad/s (m/s); NaN: not known */
-  double kp;                /* of its drive, N m/rad (N/m); 0: coupled, or no spring          */
-  double kd;                /* of its drive, N m s/rad (N s/m)                                */
-  double effort;            /* bound of its drive's torque, N m (N)                           */
+  double kp;                /* stiffness of its drive, N m/rad (N/m); 0: coupled, or no spring */
+  double kd;                /* damping of its drive, N m s/rad (N s/m)                        */
+  double effort;            /* largest torque (force) of its drive, N m (N)                   */
 } rdm_joint_info;
 RDM_API rdm_result rdm_robot_joint_at(int32_t robot, int32_t i,
                                       rdm_joint_info *io); /* i < num_joints; RANGE past the end */
@@ -102,18 +104,18 @@ typedef struct rdm_object_info { /* an object by name, for option object=... */
   const char *alias;        /* another name, "025_mug"; NULL: none                            */
   const char *summary;      /* one line, may be ""                                            */
   const char *shape;        /* "capsule r 0.03, straight part 0.02": kind and sizes in m      */
-  double mass;              /* kg; hull: of the default points, 500 kg/m3                     */
+  double mass;              /* kg; for "hull": of its default points, at 500 kg/m3            */
   double friction;          /* friction coefficient, on dry surfaces                          */
-  double low[3];            /* m, lowest corner of the box around what can be touched of it, from
-                             * its centre of mass, along the axes of its description          */
-  double high[3];           /* m, highest corner of it                                        */
+  double low[3];            /* m, lowest corner of the box around its touchable shapes, relative to
+                             * its centre of mass, along the axes of its description */
+  double high[3];           /* m, highest corner of the box                                   */
 } rdm_object_info;
 RDM_API int32_t rdm_object_count(void); /* as rdm_task_count */
 RDM_API rdm_result rdm_object_info_at(int32_t index,
                                       rdm_object_info *io); /* errors as rdm_task_at */
-RDM_API rdm_result rdm_object_find(const char *name, int32_t *index); /* name or alias;
-                                                                       * NOT_FOUND: nearest in
-                                                                       * the text */
+RDM_API rdm_result rdm_object_find(const char *name, int32_t *index); /* name or alias; NOT_FOUND:
+                                                                       * the text offers the
+                                                                       * nearest */
 
 /* ---- pool: worlds of one task, stepped together ---------------------------------------------- */
 typedef struct rdm_pool rdm_pool; /* handle */
@@ -127,10 +129,11 @@ enum rdm_status {                  /* bits of rdm_buffers.status */
   RDM_STATUS_DIVERGED = 2,         /* a value was not finite: the episode was truncated       */
   RDM_STATUS_BAD_ACTION = 4,       /* the row of actions was not finite: likewise             */
   RDM_STATUS_TASK = 8,             /* a function of a host's own task failed: likewise        */
-  RDM_STATUS_SOLVER = 16,          /* contacts were not solved, not seen in engine ode: one was
-                                    * wrong by more than 1 m/s along its normal when the sweeps
-                                    * ended (much under something heavier, with few iterations),
-                                    * or gave way without end (contact_max_speed below 0.02 m/s) */
+  RDM_STATUS_SOLVER = 16,          /* the contact solver did not converge (engine ode does not
+                                    * report this): a contact was wrong by more than 1 m/s along its
+                                    * normal when the sweeps ended (something light under something
+                                    * much heavier, with few iterations), or it kept giving way
+                                    * (contact_max_speed below 0.02 m/s) */
   RDM_STATUS_SLOWED = 32           /* a free body that turned by more than 3 rad in a substep was
                                     * slowed to that */
 };
@@ -139,64 +142,66 @@ typedef struct rdm_pool_config { /* what a pool is made from */
   int32_t num_envs;          /* worlds, 1..65536, default 1 */
   const char *task;          /* name, required; copied */
   uint64_t seed;             /* world i draws from stream (seed, i), until a reset names another */
-  int32_t num_threads;       /* 0 or 1: the caller's only; up to 256; default 0 */
+  int32_t num_threads;       /* 0 or 1: the caller's thread only; up to 256; default 0 */
   int32_t autoreset;         /* RDM_AUTORESET_*, default same step */
   const rdm_option *options; /* [num_options], copied; NULL: none */
   int32_t num_options;       /* count, default 0 */
   int32_t reserved;          /* 0 */
   const rdm_host *host;      /* hooks of this handle, copied; NULL: those of rdm_init */
-  const char *settings;      /* options as lines key=value, laid over `options`, copied; NULL:
+  const char *settings;      /* options as lines key=value, which override `options`, copied; NULL:
                               * none */
-  char *error;               /* [error_size] the text of a failing call that takes this config;
-                              * NULL */
-  int32_t error_size;        /* bytes, terminator included; what is longer is cut */
+  char *error;               /* [error_size] receives the text when a call that takes this config
+                              * fails; NULL: not wanted */
+  int32_t error_size;        /* bytes, terminator included; a longer text is cut */
   int32_t reserved2;         /* 0 */
-  void *user;                /* for a host's own task: rdm_scene_user, rdm_world_user; NULL */
+  void *user;                /* for a host's own task, which reads it by rdm_scene_user and
+                              * rdm_world_user; may be NULL */
 } rdm_pool_config;
 /* Fills the first `size` bytes with defaults. ARGUMENT for NULL or a size below the first
  * version's. */
 RDM_API rdm_result rdm_pool_config_init(rdm_pool_config *c, size_t size);
 
-/* What a pool of this config would be: OK where rdm_pool_create would be, memory aside, else its
- * error. Makes the task to ask it, and no world; nothing is kept. */
+/* The sizes that a pool of this config would have. Returns what rdm_pool_create would return,
+ * memory aside. Makes the task for a moment and no world; nothing is kept. */
 RDM_API rdm_result rdm_pool_config_spec(const rdm_pool_config *c, rdm_spec *io);
-/* Bytes that creation takes: `ours` in one block, exact; `engines` by the physics engine from the C
- * library, an estimate. Either may be NULL. No hook is called. The task must be made to know them:
- * that is done in memory of the C library, which has it back at the end. */
+/* Bytes that creation takes: *ours in one block, exact; *engines by the physics engine from the C
+ * library, an estimate. Either may be NULL. No hook is called: the task is made to find out, in
+ * memory of the C library that is freed at the end. */
 RDM_API rdm_result rdm_pool_config_memory(const rdm_pool_config *c, size_t *ours, size_t *engines);
 /* Makes the worlds. They are not reset yet: call rdm_pool_reset before the first step. A host's
  * alloc hook is called once, for one block that holds all of the pool; to know its size the task is
- * made once before, as by rdm_pool_config_memory. Without the hook, the C library gives each
- * part. */
+ * made once before, as by rdm_pool_config_memory. Without the hook, each part comes from the C
+ * library. */
 RDM_API rdm_result rdm_pool_create(rdm_pool **out, const rdm_pool_config *c);
-/* The same in memory [bytes] at any address, which is the pool's until it is destroyed, and the
- * caller's all the time: at least `ours` of rdm_pool_config_memory. Fewer are RANGE, and the text
- * says how many are needed. Neither alloc hook nor C library are asked for memory, then and later,
- * but by the physics engine, and by the system for threads; what rdm_pool_set_starts keeps must
- * fit into what is left (MEMORY). */
+/* The same in memory [bytes] at any address: at least *ours of rdm_pool_config_memory, else RANGE,
+ * and the text says how many are needed. The pool uses the memory until it is destroyed; the caller
+ * owns it throughout. Neither alloc hook nor C library are asked for memory, now or later, except
+ * by the physics engine and, for threads, by the system; what rdm_pool_set_starts keeps must fit
+ * into what is left (MEMORY). */
 RDM_API rdm_result rdm_pool_create_in(rdm_pool **out, const rdm_pool_config *c, void *memory,
                                       size_t bytes);
 RDM_API void rdm_pool_destroy(rdm_pool *p);                 /* NULL is fine */
 RDM_API const char *rdm_pool_error(const rdm_pool *p); /* last failure on this handle; "" at
                                                         * first */
 RDM_API rdm_result rdm_pool_get_spec(const rdm_pool *p,
-                                     rdm_spec *io); /* as rdm_pool_config_spec, of a pool */
+                                     rdm_spec *io); /* as rdm_pool_config_spec, for a pool */
 RDM_API rdm_result rdm_pool_field_at(const rdm_pool *p, int32_t i,
                                      rdm_field_info *io); /* i < num_fields */
-/* Mean action [action_dim] that a new policy starts from: the task's start pose, seldom that of
- * RDM_BASELINE_HOLD. */
+/* The mean action [action_dim] that a new policy starts from: the task's start pose, which usually
+ * differs from the action of RDM_BASELINE_HOLD. */
 RDM_API rdm_result rdm_pool_get_initial_mean(const rdm_pool *p, float *action);
-/* What option i of the task is in this pool: key and the value as text [RDM_TEXT_SIZE], which reads
- * back exactly. RANGE for a text that is longer: rdm_pool_get_settings has it. Behind the task's
- * num_options come keys with a FIELD that were set, in order; RANGE ends them. */
+/* The value of option i of the task in this pool: its key, and the value as text [RDM_TEXT_SIZE],
+ * which reads back exactly. RANGE for a longer text: rdm_pool_get_settings has it. After the task's
+ * num_options follow the keys with a FIELD that were set, in order, then RANGE. */
 RDM_API rdm_result rdm_pool_setting_at(const rdm_pool *p, int32_t i, const char **key, char *text);
-/* All options as text [capacity] of lines key=value, but with option level those that it draws:
- * given as settings they make the same pool again. */
+/* All options as text [capacity] of lines key=value, except those that option level draws; given as
+ * settings they make the same pool again. */
 RDM_API rdm_result rdm_pool_get_settings(const rdm_pool *p, char *text, size_t capacity,
                                          size_t *size);
 
-/* Rows of world i begin at i * width; 64-byte aligned; the same addresses until destroy or bind.
- * The library writes them inside reset, step and read_state only. */
+/* Rows of world i begin at i * width. Arrays are 64-byte aligned and keep their addresses until
+ * rdm_pool_destroy or rdm_pool_set_buffers. The library writes them only within calls that change
+ * worlds. */
 typedef struct rdm_buffers {
   uint32_t struct_size;      /* in: bytes */
   uint32_t reserved;         /* 0 */
@@ -205,56 +210,57 @@ typedef struct rdm_buffers {
                               * as obs */
   float *action;             /* [num_envs][action_dim] in [-1, 1], clipped; the host writes */
   float *reward;             /* [num_envs] */
-  float *cost;               /* [num_envs][cost_dim] >= 0; column 0 is the task's paper cost */
+  float *cost;               /* [num_envs][cost_dim] >= 0; column 0 is the cost of the paper */
   float *cost_raw;           /* [num_envs][cost_dim] the measured value behind each cost */
   float *episode_return;     /* [num_envs] sum of rewards; the finished episode's where one ended */
   float *episode_cost;       /* [num_envs][cost_dim] likewise */
   int32_t *episode_step;     /* [num_envs] control steps, likewise */
   uint32_t *status;          /* [num_envs] RDM_STATUS_* of the last step or reset */
   uint8_t *terminated;       /* [num_envs] 1: the task ended (a fall) */
-  uint8_t *truncated;        /* [num_envs] 1: cut by the time limit or a bad status */
+  uint8_t *truncated;        /* [num_envs] 1: ended by the time limit or a bad status */
   uint8_t *success;          /* [num_envs] 1: the task's success holds in this step */
   uint32_t *episode_status;  /* [num_envs] all RDM_STATUS_* of the episode; the finished one's
                               * where one ended */
 } rdm_buffers;
 RDM_API rdm_result rdm_pool_get_buffers(const rdm_pool *p, rdm_buffers *io); /* borrowed pointers */
-/* Non-NULL pointers of b take the place of the pool's (sizes as above, at least 4-byte aligned;
- * they must outlive the pool or the next bind); NULL ones keep what is there. Contents are copied
- * over. */
+/* Replaces the pool's arrays by those of b that are not NULL (sizes as above, at least 4-byte
+ * aligned); they must live until the pool is destroyed or they are replaced again. Present contents
+ * are copied into them. */
 RDM_API rdm_result rdm_pool_set_buffers(rdm_pool *p, const rdm_buffers *b);
 
-/* Starts new episodes where mask [num_envs] is not 0 (NULL: everywhere). seeds [num_envs] name new
- * streams: the seed alone, whatever the world's number, so that seed s gives what a pool of one
- * world created with seed s has. NULL: continue the worlds' own, which after create is
- * (config.seed, i). Costs are 0 afterwards. An entry of the first observation that is not finite is
- * written as 0, and the world is flagged RDM_STATUS_DIVERGED, its episode with it. Where a host's
- * own task fails: its error, for the lowest such world; these are flagged RDM_STATUS_TASK and stand
- * as if they were never reset, the others have begun. */
+/* Starts new episodes where mask [num_envs] is not 0 (NULL: everywhere). seeds [num_envs] give
+ * these worlds new random streams, which depend on the seed alone and not on the world's number:
+ * seed s gives the episode of a pool of one world created with seed s. seeds NULL: the worlds
+ * continue their own streams, which after create are (config.seed, i). Costs are 0 afterwards. An
+ * entry of the first observation that is not finite is written as 0, and the world and its episode
+ * are flagged RDM_STATUS_DIVERGED. Where a host's own task fails, the error of the lowest such
+ * world is returned; all such worlds are flagged RDM_STATUS_TASK and count as never reset, the
+ * others have begun. */
 RDM_API rdm_result rdm_pool_reset(rdm_pool *p, const uint64_t *seeds, const uint8_t *mask);
-/* One control step of every world: reads action, writes all the rest. STATE before the first reset,
- * and with autoreset off while an ended world was not reset. Worlds that diverge, get an action
- * that is not finite, or whose task of a host's own fails, are truncated and flagged, with reward
- * and cost 0 in that step; the call returns OK. With option action_repeat it is that many control
- * steps with the same action, or as many as the episode has left: reward and cost are sums over
- * them, success is set if any had it, status has the bits of all, the other rows are those after
- * the last. */
+/* One control step of every world: reads action, writes all other rows. STATE before the first
+ * reset, and with autoreset off while a world that ended was not reset. A world that diverges, gets
+ * an action that is not finite, or whose task of a host's own fails, is truncated and flagged, with
+ * reward and cost 0 in that step; the call still returns OK. With option action_repeat it makes
+ * that many control steps with the same action, or as many as the episode has left: reward and cost
+ * are sums over them, success is 1 if it was in any, status has the bits of all, the other rows are
+ * those after the last. */
 RDM_API rdm_result rdm_pool_step(rdm_pool *p);
 /* The same for worlds whose mask [num_envs] is not 0; rows of the others do not change. */
 RDM_API rdm_result rdm_pool_step_masked(rdm_pool *p, const uint8_t *mask);
 
-/* actions that nobody learned */
+/* simple actions to compare learned ones with */
 enum rdm_baseline_kind { RDM_BASELINE_ZERO = 0, RDM_BASELINE_HOLD = 1, RDM_BASELINE_RANDOM = 2 };
 /* Fills the action buffer: all 0 (the middle of each joint's range), the nominal start pose, or
  * uniform in [-1, 1] from the stream (seed, world, policy). */
 RDM_API rdm_result rdm_pool_baseline(rdm_pool *p, int32_t kind);
 
-/* The whole state of world env, exact: a pool of the same task and options that sets it
- * continues with the same bytes. read_state also rewrites obs and clears the other rows of that
- * world. env -1: all worlds in one block. FORMAT for bytes that are not whole, of another task or
- * options, or hold what no world can have: nothing changes. Bytes are for files and other
- * processes. Snapshots within one, as for going back some steps, are cheap by rdm_pool_copy, with a
- * second pool whose worlds are the ring: a thirtieth of writing and reading again, in a task of
- * hands. */
+/* The complete and exact state of world env: a pool of the same task and options that reads it
+ * continues with the same bytes. env -1: all worlds in one block. read_state also rewrites obs and
+ * clears the other rows of that world. FORMAT for bytes that are truncated, of another task or
+ * other options, or hold values that no world can have; nothing changes then. The bytes are meant
+ * for files and other processes. For snapshots within a process, as to go back some steps, copy
+ * worlds into a second pool by rdm_pool_copy: in a task of hands that takes a thirtieth of the
+ * time. */
 RDM_API rdm_result rdm_pool_write_state(const rdm_pool *p, int32_t env, void *bytes,
                                         size_t capacity, size_t *size); /* to bytes [capacity];
                                                                          * NULL asks for the
@@ -262,9 +268,9 @@ RDM_API rdm_result rdm_pool_write_state(const rdm_pool *p, int32_t env, void *by
 RDM_API rdm_result rdm_pool_read_state(rdm_pool *p, int32_t env, const void *bytes,
                                        size_t size); /* of bytes [size] */
 RDM_API rdm_result rdm_pool_get_hash(const rdm_pool *p, int32_t env,
-                                     uint64_t *hash); /* of the state; -1: all */
+                                     uint64_t *hash); /* of the state of world env; -1: of all */
 
-typedef struct rdm_shape_info { /* a part of what the scene is made of, the same for all worlds */
+typedef struct rdm_shape_info { /* a shape of the scene, the same for all worlds */
   uint32_t struct_size;      /* in: bytes */
   int32_t kind;              /* RDM_SHAPE_SPHERE ... RDM_SHAPE_HULL; plane: the half space below
                               * z = 0 of its frame */
@@ -276,7 +282,7 @@ typedef struct rdm_shape_info { /* a part of what the scene is made of, the same
 } rdm_shape_info;
 RDM_API rdm_result rdm_pool_shape_at(const rdm_pool *p, int32_t i,
                                      rdm_shape_info *io); /* i < num_shapes */
-/* To poses [num_shapes] those of the shapes, in the world's frame. */
+/* Writes the poses of the shapes of world env to poses [num_shapes], in that world's frame. */
 RDM_API rdm_result rdm_pool_get_poses(const rdm_pool *p, int32_t env, rdm_pose *poses);
 typedef struct rdm_contact { /* frozen layout: one contact point of the last substep */
   int32_t shape_a, shape_b;  /* for rdm_pool_shape_at */
@@ -285,21 +291,21 @@ typedef struct rdm_contact { /* frozen layout: one contact point of the last sub
   float force[3];            /* N, on a */
   float depth;               /* m */
 } rdm_contact;
-/* Writes up to capacity contacts to out [capacity], of sleeping bodies as they were when they fell
- * asleep; *count is how many there are. */
+/* Writes up to capacity contacts to out [capacity]; *count is how many there are. Contacts of
+ * sleeping bodies are those of the moment when they fell asleep. */
 RDM_API rdm_result rdm_pool_get_contacts(const rdm_pool *p, int32_t env, rdm_contact *out,
                                          size_t capacity, size_t *count);
-/* A picture of world env. camera: a name of the task's. rgb [h][w][3], depth [h][w] (m along the
- * optical axis, 0: nothing hit), segmentation [h][w] (shape, -1: nothing); each may be NULL. 1 <=
- * w, h <= 8192. */
+/* A picture of world env by the task's camera of that name. rgb [h][w][3], depth [h][w] (m along
+ * the optical axis, 0: nothing hit), segmentation [h][w] (shape, -1: nothing); each may be NULL. 1
+ * <= w, h <= 8192. */
 RDM_API rdm_result rdm_pool_render(rdm_pool *p, int32_t env, const char *camera, int32_t w,
                                    int32_t h, uint8_t *rgb, float *depth, int32_t *segmentation);
 typedef struct rdm_pool_stats { /* counts since create */
   uint32_t struct_size;      /* in: bytes */
-  int32_t contacts_max;      /* largest number of contacts in a substep's list since create, all
+  int32_t contacts_max;      /* largest number of contacts in a substep since create, of all
                               * worlds */
-  double contacts_mean;      /* mean of the same */
-  double joint_drift;        /* m, largest gap of any joint now, all worlds */
+  double contacts_mean;      /* mean number of contacts in a substep */
+  double joint_drift;        /* m, largest gap in any joint now, of all worlds */
   int64_t steps;             /* control steps of one world, summed over worlds */
   int64_t diverged;          /* steps and resets flagged RDM_STATUS_DIVERGED so far */
   int64_t overflowed;        /* steps flagged RDM_STATUS_CONTACTS so far */
@@ -307,54 +313,56 @@ typedef struct rdm_pool_stats { /* counts since create */
   int64_t task_failed;       /* steps flagged RDM_STATUS_TASK so far */
   int64_t unconverged;       /* steps flagged RDM_STATUS_SOLVER so far */
   int64_t slowed;            /* steps flagged RDM_STATUS_SLOWED so far */
-  double solver_residual;    /* m/s, what a contact's normal velocity was still wrong by when the
-                              * last sweep of the last step came to it, the largest of all
-                              * worlds; NaN: engine ode, not measured */
-  int64_t violations;        /* control steps so far in which column 0, or a cost with a limit by
-                              * the task, was above 0 */
+  double solver_residual;    /* m/s, largest error of a contact's normal velocity that the solver's
+                              * last sweep of the last step found, of all worlds; NaN: engine ode
+                              * does not measure it */
+  int64_t violations;        /* control steps so far in which column 0, or a cost that the task
+                              * limits, was above 0 */
 } rdm_pool_stats;
 RDM_API rdm_result rdm_pool_get_stats(const rdm_pool *p, rdm_pool_stats *io); /* fills io */
-/* World dst_env of dst (-1: all of them) becomes what world src_env of src is, at the price of
- * copying memory: afterwards it continues with the bytes that read_state(write_state) would give,
- * and its rows (but action, and those of rdm_sensors) are the other's. Pools of the same task and
- * options, of any sizes, threads and seeds; src may be dst. ARGUMENT for pools that differ, RANGE
- * for worlds that are not there: nothing changes. No heap. */
+/* Makes world dst_env of dst (-1: every world) a copy of world src_env of src, at the price of
+ * copying memory: it continues with the same bytes as after write_state and read_state, and its
+ * rows are copied too, except action and those of rdm_sensors. Both pools must have the same task
+ * and options; sizes, threads and seeds may differ, and src may be dst. ARGUMENT for pools that
+ * differ, RANGE for worlds that do not exist; nothing changes then. No heap. */
 RDM_API rdm_result rdm_pool_copy(rdm_pool *dst, int32_t dst_env, const rdm_pool *src,
                                  int32_t src_env);
 /* Joint i of a world's robots, the same for all worlds; i < num_joints of rdm_spec. */
 RDM_API rdm_result rdm_pool_joint_at(const rdm_pool *p, int32_t i,
                                      rdm_joint_info *io); /* RANGE past the end */
-/* Where the joints of world env are and how fast, q [count] and qd [count] (rad, rad/s; m, m/s) in
+/* Positions q [count] and velocities qd [count] of the joints of world env (rad, rad/s; m, m/s), in
  * the order of rdm_pool_joint_at; count: num_joints. Either array may be NULL. */
 RDM_API rdm_result rdm_pool_get_joints(const rdm_pool *p, int32_t env, double *q, double *qd,
                                        size_t count);
-/* Puts them there: q [count], and with it what their drives go for, and qd [count]; what is NULL
- * stays. RANGE names the joint that is beyond its range by more than its ends give way (option
- * limit_margin; 10 where ends are soft), or as fast as 1e6; ARGUMENT one that is not finite. STATE
- * where no episode runs. Nothing changes then. A coupled joint is moved by its drive alone: it may
- * be off, and is drawn back. NaN of one is where, or as fast as, the other joint leads it. Bases,
- * bodies and what the task remembers of commands stay. Numbers are rounded to float where the
- * engine keeps floats. As read_state it rewrites obs and clears the other rows. Where a host's own
- * task fails to observe: its error; the joints are set, and obs is as it was. */
+/* Sets positions q [count], and the targets of the drives with them, and velocities qd [count];
+ * what is NULL stays. RANGE names a joint that is further beyond its range than its ends yield
+ * (option limit_margin; 10 where ends are soft), or as fast as 1e6; ARGUMENT one that is not
+ * finite. STATE where no episode runs. Nothing changes then. A coupled joint may be set off its
+ * coupling; its drive pulls it back. NaN for one means the position, or velocity, that follows from
+ * the joint that it is coupled to. Bases, bodies and what the task remembers of commands stay.
+ * Numbers are rounded to float where the engine keeps floats. Like read_state, it rewrites obs and
+ * clears the other rows. Where a host's own task fails to observe, its error is returned; the
+ * joints are set then, and obs is as before. */
 RDM_API rdm_result rdm_pool_set_joints(rdm_pool *p, int32_t env, const double *q, const double *qd,
                                        size_t count);
-typedef struct rdm_ray_hit { /* what a ray meets first */
+typedef struct rdm_ray_hit { /* what a ray hits first */
   uint32_t struct_size;      /* in: bytes */
   int32_t shape;             /* for rdm_pool_shape_at; -1: nothing, all else is NaN */
   double distance;           /* m, from the origin */
   double point[3];           /* m, where the ray enters it */
   double normal[3];          /* unit, out of the shape there */
 } rdm_ray_hit;
-/* The nearest shape of world env that the ray from origin [3] (m, world axes) along direction [3]
- * (of any length above 0) enters within `range` m, above 0, INFINITY too. Shapes are those that
- * pictures show; one that holds the origin is not met. */
+/* Finds the nearest shape of world env that the ray from origin [3] (m, world axes) along direction
+ * [3] (any length above 0) enters within `range` m (above 0; may be INFINITY). It hits the shapes
+ * that pictures show, except those that contain the origin. */
 RDM_API rdm_result rdm_pool_raycast(const rdm_pool *p, int32_t env, const double origin[3],
                                     const double direction[3], double range, rdm_ray_hit *io);
-/* Pushes a shape's carrier during the next step: force [3] at its centre of mass, N, world axes. */
+/* Pushes the body or link that has this shape during the next step: force [3] (N, world axes) at
+ * its centre of mass. */
 RDM_API rdm_result rdm_pool_push(rdm_pool *p, int32_t env, int32_t shape, const float force[3]);
-/* What failed last in world env of the pool: "world 3: task press: judge: sensor lost", at most 255
- * bytes; "" at first, and for the library's own tasks. Kept until the world's next failure; no part
- * of a saved state. */
+/* The text of the last failure in world env: "world 3: task press: judge: sensor lost", at most 255
+ * bytes; "" at first, and always for the library's own tasks. It is kept until the world's next
+ * failure and is not part of a saved state. */
 RDM_API const char *rdm_pool_world_error(const rdm_pool *p, int32_t env);
 
 #ifdef __cplusplus

@@ -22,7 +22,7 @@ inline rdm_pool_config pool_config(const char* task, int32_t num_envs = 1,
 class Pool {
  public:
   explicit Pool(const rdm_pool_config& config) : Pool(made(rdm_pool_create, &config), config) {}
-  // In memory [bytes] that must outlive it: at least Pool::memory(config).
+  // Made in memory [bytes], at least Pool::memory(config), which must outlive the pool.
   Pool(const rdm_pool_config& config, void* memory, size_t bytes)
       : Pool(made(rdm_pool_create_in, &config, memory, bytes), config) {}
   static size_t memory(const rdm_pool_config& config) {
@@ -71,7 +71,7 @@ class Pool {
   void set_state(const Bytes& bytes, int32_t env = -1) {
     check(rdm_pool_read_state(get(), env, bytes.data(), bytes.size()));
   }
-  // Of each shape, in the frame of that world.
+  // The pose of each shape, in the frame of that world.
   std::vector<rdm_pose> poses(int32_t env = 0) const {
     std::vector<rdm_pose> all(static_cast<size_t>(spec_.num_shapes) + 1);
     check(rdm_pool_get_poses(get(), env, all.data()));
@@ -113,10 +113,10 @@ class Pool {
     check(rdm_pool_get_joints(get(), env, nullptr, qd.data(), qd.size()));
     return qd;
   }
-  // What is empty stays.
+  // An empty vector changes nothing.
   void set_joints(int32_t env, const std::vector<double>& q, const std::vector<double>& qd = {}) {
     const auto joints = static_cast<size_t>(spec_.num_joints);
-    size_t count = joints;  // another one is refused
+    size_t count = joints;  // the call refuses any other count
     for (const auto* given : {&qd, &q})
       if (!given->empty() && given->size() != joints) count = given->size();
     check(rdm_pool_set_joints(get(), env, q.empty() ? nullptr : q.data(),

@@ -22,10 +22,10 @@ inline rdm_recording_config recording_config(const Pool& pool) {
 
 class Recording {
  public:
-  Recording() = default;  // none: get() is null
+  Recording() = default;  // empty: get() is null
   explicit Recording(const rdm_recording_config& config)
       : handle_(made(rdm_recording_create, &config)) {}
-  // With memory for so many rows.
+  // Takes memory for `capacity` rows at once.
   explicit Recording(const Pool& pool, int64_t capacity = 0) {
     rdm_recording_config c = recording_config(pool);
     c.capacity = capacity;
@@ -55,7 +55,7 @@ class Recording {
   }
   void append(const rdm_recording_rows& rows) { check(rdm_recording_append(get(), &rows)); }
   void append(const Recording& other) { check(rdm_recording_append_all(get(), other.get())); }
-  // How many episodes went: those without success, or above max_cost [cost_dim] (null: any).
+  // Drops episodes without success, or above max_cost [cost_dim] (null: any); returns how many.
   int64_t filter(bool need_success, const double* max_cost = nullptr) {
     int64_t dropped = 0;
     check(rdm_recording_filter(get(), need_success, max_cost, &dropped));

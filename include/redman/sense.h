@@ -9,9 +9,9 @@ extern "C" {
 #endif
 
 /* ---- what the worlds of a pool see, beside rdm_buffers --------------------------------------- */
-/* The option `modality` of every task says what is made in each reset and step ("points",
- * "rgb+depth"); other options say from which cameras and how large. Rows show the state that obs
- * shows; nothing is kept of the state before an automatic reset.
+/* Option `modality` of every task says which of these each reset and step makes ("points",
+ * "rgb+depth"); other options choose the cameras and sizes. They show the same state as obs; unlike
+ * final_obs, nothing shows the last state before an automatic reset.
  *
  *   rdm_option seen[] = {{"modality", "points", 0}, {"points", NULL, 1024}};
  *   config.options = seen;  config.num_options = 2;  ... rdm_pool_create(&p, &config) ...
@@ -19,14 +19,14 @@ extern "C" {
  *   rdm_pool_get_sensors(p, &s);
  *   for (...) { rdm_pool_step(p);  use s.points + 3 * s.num_points * env; }
  * / */
-/* the same addresses until destroy; NULL where the modality is off */
+/* addresses stay until rdm_pool_destroy; NULL where the modality is off */
 typedef struct rdm_sensors {
   uint32_t struct_size;           /* in: bytes */
   int32_t num_cameras;            /* of rgb, depth and segmentation, in the order of the option
                                    * `cameras` */
   int32_t width;                  /* pixels */
   int32_t height;                 /* pixels */
-  int32_t num_points;             /* of a world, option `points` */
+  int32_t num_points;             /* points of each world, option `points` */
   int32_t num_voxels;             /* along each side of the local grid, option `voxels` */
   float voxel_size;               /* m */
   int32_t reserved;               /* 0 */
@@ -37,37 +37,37 @@ typedef struct rdm_sensors {
                                    * rdm_pool_shape_at, -1: nothing */
   const float *points;            /* [num_envs][num_points][3], world, m; planes are left out */
   const int32_t *point_shape;     /* [num_envs][num_points], -1: nothing was seen */
-  const int32_t *point_count;     /* [num_envs] points that differ; the rest repeats them in
-                                   * turn, up to those of option goal_points, which come last:
-                                   * the first free body where it is to be brought */
-  const int8_t *voxels;           /* [num_envs][num_voxels][num_voxels][num_voxels] (x, y, z)
-                                   * about the task's object: 1 occupied, 0 free, -1 not seen */
-  const uint8_t *point_class;     /* [num_envs][num_points] what a point lies on: one of the
-                                   * articulations (hands, arms included), then of the free
-                                   * bodies, then anything else, or nothing; last the goal, with
-                                   * option goal_points */
-  int32_t num_classes;            /* of those; 0 where points are off */
+  const int32_t *point_count;     /* [num_envs] number of different points; later rows repeat them
+                                   * in turn, up to those of option goal_points, which come last:
+                                   * the first free body at its goal */
+  const int8_t *voxels;           /* [num_envs][num_voxels][num_voxels][num_voxels] (x, y, z) around
+                                   * the task's object: 1 occupied, 0 free, -1 not seen */
+  const uint8_t *point_class;     /* [num_envs][num_points] what a point lies on, numbered in this
+                                   * order: the articulations (a hand with its arm), the free
+                                   * bodies, anything else or nothing, and with option goal_points
+                                   * the goal */
+  int32_t num_classes;            /* number of these classes; 0 where points are off */
   int32_t reserved2;              /* 0 */
-  const uint8_t *point_color;     /* [num_envs][num_points][3] of what a point lies on, sRGB, 0
-                                   * for nothing; NULL without option point_color */
+  const uint8_t *point_color;     /* [num_envs][num_points][3] colour of what a point lies on, sRGB,
+                                   * 0 for nothing; NULL without option point_color */
 } rdm_sensors;
 RDM_API rdm_result rdm_pool_get_sensors(const rdm_pool *p, rdm_sensors *io); /* fills io */
-/* The i-th camera by whose name this pool can look: the task's, then those that ride on its robots
- * ("right_palm" and "left_palm" of hands), then those for clouds. RANGE ends. */
+/* Camera i of those that this pool knows by name: the task's, then those on its robots
+ * ("right_palm" and "left_palm" of hands), then those for clouds. RANGE past the end. */
 RDM_API rdm_result rdm_pool_camera_at(const rdm_pool *p, int32_t i, rdm_camera_info *io);
-/* The cameras that rows stand for: i-th of the pictures (cloud 0) or of points and voxels (cloud
- * 1). RANGE ends. */
+/* Camera i of the pictures (cloud 0), or of those that points and voxels come from (cloud 1). RANGE
+ * past the end. */
 RDM_API rdm_result rdm_pool_sensor_camera_at(const rdm_pool *p, int32_t cloud, int32_t i,
                                              rdm_camera_info *io);
 
-/* Corners, points [capacity][3], of shape i, an RDM_SHAPE_HULL, in its own frame, m. Writes up to
- * capacity of them; *count is how many there are. */
+/* Writes up to capacity corners of shape i, an RDM_SHAPE_HULL, to points [capacity][3], in its own
+ * frame, m; *count is how many there are. */
 RDM_API rdm_result rdm_pool_get_hull(const rdm_pool *p, int32_t i, float *points, size_t capacity,
                                      size_t *count);
 
-/* `wanted` of points [count][3] that lie furthest from each other: their numbers, in order of
- * choice, to chosen [wanted]. `start` is the first. Exact. scratch [scratch_bytes]:
- * rdm_sample_scratch bytes or more, aligned in any way; no heap. */
+/* Farthest point sampling: chooses `wanted` of points [count][3], first number `start`, then always
+ * the one that is farthest from all chosen before, and writes their numbers to chosen [wanted].
+ * Exact. scratch [scratch_bytes]: rdm_sample_scratch bytes or more, of any alignment; no heap. */
 RDM_API rdm_result rdm_sample_furthest(const float *points, size_t count, size_t wanted,
                                        int32_t start, int32_t *chosen, void *scratch,
                                        size_t scratch_bytes);
@@ -75,18 +75,18 @@ RDM_API size_t rdm_sample_scratch(size_t count); /* bytes, at any address; 0: co
                                                   * [1, 2^22] */
 
 /* ---- encoders: agents and policies that read points ------------------------------------------ */
-/* With the agent option `encoder` ("64,128") a PointNet makes features of a cloud for the actor,
- * beside the entries of the row that it reads (actor_obs, "vision": nothing of an object); critics
- * see rows alone. Of rdm_sensors:
+/* With agent option `encoder` ("64,128") a PointNet computes features of a cloud for the actor,
+ * beside the entries of the observation that it reads (option actor_obs; "vision": all but those of
+ * an object); critics read observations alone. With rdm_sensors:
  *
  *   rdm_points seen = {.struct_size = sizeof seen, .num_points = s.num_points, .points = s.points};
  *   rdm_agent_act_points(agent, b.obs, &seen, RDM_ACT_SAMPLE, b.action);
  *   rdm_pool_step(pool);
  *   rdm_agent_record(agent, &t);
  *
- * or rdm_agent_rollout with a pool whose modality has points. Points count as whole millimetres
- * from `encoder_origin`, within +-32.767 m; their order and what comes twice change nothing.
- * Several clouds (of two cameras, of a goal) are one whose points have classes that tell them
+ * or rdm_agent_rollout with a pool whose modality has points. Points are rounded to millimetres
+ * from `encoder_origin`, within +-32.767 m; neither their order nor duplicates matter. Several
+ * clouds (of two cameras, or of a goal) are given as one, with classes that tell their points
  * apart. */
 typedef struct rdm_points {     /* a cloud for each row of obs, in the call that takes it */
   uint32_t struct_size;         /* bytes */
@@ -99,7 +99,7 @@ typedef struct rdm_points {     /* a cloud for each row of obs, in the call that
 } rdm_points;
 /* As rdm_agent_act: action [num_envs][action_dim] for obs [num_envs][obs_dim] and as many clouds,
  * of an agent with the option encoder; STATE without it. ARGUMENT for a point that is not finite,
- * RANGE for another number of points or a class that there is not: nothing is remembered. */
+ * RANGE for another number of points or a class that does not exist; nothing is remembered then. */
 RDM_API rdm_result rdm_agent_act_points(rdm_agent *a, const float *obs, const rdm_points *points,
                                         int32_t mode, float *action);
 /* As rdm_policy_act, of obs [rows][obs_dim], noise [rows][action_dim] or NULL,
@@ -113,8 +113,8 @@ typedef struct rdm_pretrain_config { /* how rdm_agent_pretrain learns */
   int32_t num_labels;         /* kinds of points to tell apart, 2..64, required */
   int32_t epochs;             /* passes over the clouds, 1..100000, default 20 */
   int32_t batch_rows;         /* clouds of a minibatch, 1..4096, default 16 */
-  double learning_rate;       /* Adam's, 0..10, default 1e-3, falling in a line to a tenth */
-  double validation;          /* share of the clouds that are not learned from, 0..0.9, default
+  double learning_rate;       /* of Adam, 0..10, default 1e-3, falling linearly to a tenth */
+  double validation;          /* share of the clouds held back for validation, 0..0.9, default
                                * 0.1 */
   uint64_t seed;              /* of the head's weights, of shuffling and of the choice, default 0 */
 } rdm_pretrain_config;
@@ -126,16 +126,16 @@ typedef struct rdm_pretrain_report { /* what rdm_agent_pretrain did */
   int32_t validation_rows;    /* clouds */
   int32_t reserved;           /* 0 */
   double train_loss;          /* of the last epoch, mean cross-entropy of a point, nats */
-  double validation_loss;     /* likewise, of the clouds held back; 0 without */
-  double accuracy;            /* share of points of these that are told right; of all clouds
-                               * without */
-  double most_common;         /* share that always saying the most common label gets right */
+  double validation_loss;     /* likewise, over the clouds held back; 0 without these */
+  double accuracy;            /* share of points classified correctly, of the clouds held back;
+                               * without these, of all clouds */
+  double most_common;         /* accuracy of always answering with the most common label */
 } rdm_pretrain_report;
-/* The agent's encoder learns to tell the points of clouds [rows] apart by label [rows][num_points],
- * each less than num_labels: a head reads a point's last hidden layer and the cloud's features, and
- * is thrown away afterwards. Nothing else changes. Same seed, same bytes, for any number of
- * threads. STATE inside a horizon or without an encoder; CANCELLED after rdm_agent_cancel: the
- * encoder as before. io may be NULL. */
+/* Trains the agent's encoder to classify the points of clouds [rows] by label [rows][num_points],
+ * each less than num_labels: a head that reads a point's last hidden layer and the cloud's features
+ * is added, and thrown away afterwards. Nothing else changes. Same seed, same bytes, for any number
+ * of threads. STATE inside a horizon or without an encoder; CANCELLED after rdm_agent_cancel: the
+ * encoder is as before. io may be NULL. */
 RDM_API rdm_result rdm_agent_pretrain(rdm_agent *a, const rdm_points *points, const uint8_t *label,
                                       int32_t rows, const rdm_pretrain_config *how,
                                       rdm_pretrain_report *io);

@@ -1,4 +1,4 @@
-// redman/sense.hpp: what worlds see, and agents and policies that see points. C++17, experimental.
+// redman/sense.hpp: what worlds see, and agents and policies that read points. C++17, experimental.
 //
 //   const rdm_points seen = redman::points(redman::sensors(pool));
 //   redman::act(agent, pool.obs().data(), seen, RDM_ACT_SAMPLE, pool.action().data());
@@ -11,7 +11,7 @@
 
 namespace redman {
 
-// What the pool's worlds see; addresses stay until the pool ends.
+// What the pool's worlds see; addresses stay until the pool is destroyed.
 inline rdm_sensors sensors(const Pool& pool) {
   auto s = sized<rdm_sensors>();
   check(rdm_pool_get_sensors(pool.get(), &s));
@@ -34,7 +34,7 @@ inline rdm_points points(const float* metres, int32_t count, const uint8_t* clas
   p.point_color = colors;
   return p;
 }
-// What the worlds of a pool show, borrowed from it.
+// The clouds of a pool's worlds, borrowed from it.
 inline rdm_points points(const rdm_sensors& seen) {
   return points(seen.points, seen.num_points, seen.point_class, seen.point_color);
 }

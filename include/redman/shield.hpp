@@ -41,7 +41,7 @@ inline std::vector<Guard> guards(const Pool& pool) {
   }
 }
 
-// The action nearest to one of `dim` entries that keeps normals [bounds.size()][dim].
+// The action nearest to `action`, of `dim` entries, that keeps normals [bounds.size()][dim].
 inline std::vector<float> project(const std::vector<float>& normals,
                                   const std::vector<float>& bounds, const float* action,
                                   size_t dim) {
@@ -55,18 +55,18 @@ class Shield {
   explicit Shield(const rdm_shield_config& config) : handle_(made(rdm_shield_create, &config)) {}
   rdm_shield* get() const { return handle_.get(); }
   void add(const Policy& policy) { check(rdm_shield_add_policy(get(), policy.get())); }  // borrowed
-  // normal [action_dim] . action <= bound, of all worlds; then guard i of one world.
+  // normal [action_dim] . action <= bound, for all worlds; then for guard i of one world.
   void add_guard(const float* normal, float bound) {
     check(rdm_shield_add_guard(get(), normal, bound));
   }
   void set_guard(int32_t env, int32_t i, const float* normal, float bound) {
     check(rdm_shield_set_guard(get(), env, i, normal, bound));
   }
-  // action [num_envs][action_dim] of worlds in the mask (null: all) for what is proposed.
+  // Writes action [num_envs][action_dim] of the worlds in the mask (null: all), given `proposed`.
   void act(const Pool& pool, const float* proposed, float* action, const uint8_t* mask = nullptr) {
     check(rdm_shield_act(get(), pool.get(), mask, proposed, action));
   }
-  // The pool's own row of actions.
+  // The same for the pool's own actions.
   void act(Pool& pool, const uint8_t* mask = nullptr) {
     act(pool, pool.action().data(), pool.action().data(), mask);
   }
@@ -108,7 +108,7 @@ class Shield {
   Handle<rdm_shield, rdm_shield_destroy> handle_;
 };
 
-// The agent's rollouts go under the shield, which is borrowed; null: under none any more.
+// The shield, which is borrowed, checks the agent's rollouts; null: no shield any more.
 inline void set_shield(Agent& agent, Shield* shield) {
   check(rdm_agent_set_shield(agent.get(), shield ? shield->get() : nullptr));
 }

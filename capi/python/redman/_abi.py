@@ -26,15 +26,15 @@ class Function(NamedTuple):
     doc: str
 
 
-RDM_VERSION_MAJOR = 0  # Of this header; that of the library is rdm_version().
-RDM_VERSION_MINOR = 1  # Of this header; that of the library is rdm_version().
-RDM_VERSION_PATCH = 0  # Of this header; that of the library is rdm_version().
-RDM_ABI = 1  # = SONAME; moves only when an old binary would break
+RDM_VERSION_MAJOR = 0  # The version of this header; rdm_version() is that of the library.
+RDM_VERSION_MINOR = 1  # The version of this header; rdm_version() is that of the library.
+RDM_VERSION_PATCH = 0  # The version of this header; rdm_version() is that of the library.
+RDM_ABI = 1  # also the SONAME; changes only when an old binary would break
 RDM_MAX_COSTS = 16  # cost columns of a task or an agent
 RDM_TEXT_SIZE = 64  # bytes of an option's text value, terminator included
 RDM_MAX_GUARDS = 32  # half spaces of an action, at most
 RDM_MAX_LINKS = 64  # links of a robot, at most
-RDM_MAX_KNOTS = 4  # of a curve, at most
+RDM_MAX_KNOTS = 4  # knots of a curve, at most
 RDM_MAX_SHAPES = 64  # most shapes of an object
 RDM_VERSION = RDM_VERSION_MAJOR * 1000000 + RDM_VERSION_MINOR * 1000 + RDM_VERSION_PATCH
 VERSION = "0.1.0"  # that these types are of
@@ -52,10 +52,10 @@ class ResultCode(enum.IntEnum, metaclass=Members):
     FORMAT = -6: truncated, corrupt or foreign bytes
     VERSION_MISMATCH = -7: newer file, newer struct, other ABI
     UNSUPPORTED = -8: left out of this build, or not defined for this combination
-    PHYSICS = -9: the physics engine gave up where no world could be flagged
+    PHYSICS = -9: the physics engine failed, and no single world could be flagged
     NOT_FOUND = -10: unknown name (the text offers the nearest), missing file
-    CANCELLED = -11: the host ended the call; the handle is good
-    INTERNAL = -99: a defect of redman
+    CANCELLED = -11: the host ended the call; the handle is still usable
+    INTERNAL = -99: a bug in redman
     """
 
     OK = 0
@@ -74,8 +74,8 @@ class ResultCode(enum.IntEnum, metaclass=Members):
 
 
 class Feature(enum.IntFlag, metaclass=Members):
-    """The halves of the library: worlds, learners; and frozen policies, which a build may have without
-    the learners.
+    """Parts of the library that a build may leave out: simulation, learning, and frozen policies, which
+    a build may have without learning.
 
     SIM = 1
     LEARN = 2
@@ -105,9 +105,9 @@ class OptionKind(enum.IntEnum, metaclass=Members):
 class OptionLevel(enum.IntEnum, metaclass=Members):
     """whom an option is for
 
-    BASIC = 0: all users: lists begin with these; rows of tasks of your own are
-    ADVANCED = 1: those who tune
-    LEGACY = 2: those who compare with the paper, an older release or another engine
+    BASIC = 0: for all users: lists begin with these; options of tasks of your own are of this level
+    ADVANCED = 1: for tuning
+    LEGACY = 2: for comparisons with the paper, an older release or another engine
     """
 
     BASIC = 0
@@ -168,9 +168,9 @@ class Status(enum.IntFlag, metaclass=Members):
     DIVERGED = 2: a value was not finite: the episode was truncated
     BAD_ACTION = 4: the row of actions was not finite: likewise
     TASK = 8: a function of a host's own task failed: likewise
-    SOLVER = 16: contacts were not solved, not seen in engine ode: one was wrong by more than 1 m/s along its
-        normal when the sweeps ended (much under something heavier, with few iterations), or gave way without
-        end (contact_max_speed below 0.02 m/s)
+    SOLVER = 16: the contact solver did not converge (engine ode does not report this): a contact was wrong by
+        more than 1 m/s along its normal when the sweeps ended (something light under something much heavier,
+        with few iterations), or it kept giving way (contact_max_speed below 0.02 m/s)
     SLOWED = 32: a free body that turned by more than 3 rad in a substep was slowed to that
     """
 
@@ -183,7 +183,7 @@ class Status(enum.IntFlag, metaclass=Members):
 
 
 class BaselineKind(enum.IntEnum, metaclass=Members):
-    """actions that nobody learned
+    """simple actions to compare learned ones with
 
     ZERO = 0
     HOLD = 1
@@ -248,11 +248,11 @@ class MapFormat(enum.IntEnum, metaclass=Members):
 class ShieldKind(enum.IntEnum, metaclass=Members):
     """what a shield did with a proposed action
 
-    OWN = 0: it went through
-    CHANGED = 1: refused: another one, from which the way is clean
-    PLAN = 2: refused: the next action of the plan that was made before
-    UNPROVEN = 3: nothing that was tried is clean: with option unproven=least what exceeds the budgets least
-    PROJECTED = 4: it broke guards: the nearest one that keeps them went through
+    OWN = 0: it was executed as proposed
+    CHANGED = 1: refused; another action was found whose plan keeps the budgets
+    PLAN = 2: refused; the next action of the plan that was made before
+    UNPROVEN = 3: nothing that was tried keeps the budgets: with option unproven=least what exceeds them least
+    PROJECTED = 4: it broke guards; the nearest action that keeps them was executed
     """
 
     OWN = 0
@@ -276,7 +276,7 @@ class RobotKind(enum.IntEnum, metaclass=Members):
 
 
 class LinkRow(enum.IntEnum, metaclass=Members):
-    """in the place of a row of links
+    """instead of a row of links
 
     ROOT = -1
     NONE = -2
@@ -293,7 +293,7 @@ class ScenePart(enum.IntEnum, metaclass=Members):
     BODY = 1
     LINK = 2: of all robots, robot by robot; joint i moves link i
     JOINT = 3
-    SHAPE = 4: as Pool.shapes: robots, bodies, those that stand still
+    SHAPE = 4: as Pool.shapes: of robots, of bodies, then fixed ones
     SENSOR = 5: the link of a fingertip, for rdm_world_get_sensor
     MATERIAL = 6: "default" is 0
     """
@@ -308,7 +308,7 @@ class ScenePart(enum.IntEnum, metaclass=Members):
 
 
 class Friction(enum.IntEnum, metaclass=Members):
-    """in the place of a coefficient
+    """instead of a coefficient
 
     PASSES = -1
     """
@@ -317,7 +317,7 @@ class Friction(enum.IntEnum, metaclass=Members):
 
 
 class Scale(enum.IntEnum, metaclass=Members):
-    """what a factor is on, and in brackets its bounds
+    """what a factor scales, and in brackets its bounds
 
     GRAVITY = 0: [-10, 10]
     LINK_MASS = 1: [0.001, 1000], moments with it; index: link
@@ -389,20 +389,20 @@ class Quantity(enum.IntEnum, metaclass=Members):
 
 
 class Build(Record):
-    """what this library was made of
+    """what this library was built from
 
     abi: the number of the ABI of the library
     version: "0.1.0"
-    ode: version of ODE, "" without the simulation half
+    ode: version of ODE; "" in a build without simulation
     eigen: version of Eigen
     ccd: version of libccd
     octomap: version of OctoMap
     precision: of physics and networks: "double physics, float nets"
     compiler: name and version
-    kernels: instruction set that the networks run on here
-    differs: "ODE", "libccd", "ODE, libccd": these compute other bytes here than on the machines of the recorded
-        hashes (compiled with fused multiply-adds, as by Debian for arm64, or another version), and so do worlds
-        with contacts; "": none, or no simulation half
+    kernels: instruction set that networks use on this machine
+    differs: "ODE", "libccd" or "ODE, libccd": libraries whose results here differ in their last bits from those
+        behind the recorded hashes (another version, or compiled with fused multiply-adds, as Debian does for
+        arm64); worlds with contacts differ too then. "": none, or a build without simulation
     """
 
     abi: int
@@ -418,21 +418,21 @@ class Build(Record):
 
 
 class rdm_build(Structure):
-    """what this library was made of
+    """what this library was built from
 
     struct_size: in: bytes
     abi: RDM_ABI of the library
     version: "0.1.0"
-    ode: version of ODE, "" without the simulation half
+    ode: version of ODE; "" in a build without simulation
     eigen: version of Eigen
     ccd: version of libccd
     octomap: version of OctoMap
     precision: of physics and networks: "double physics, float nets"
     compiler: name and version
-    kernels: instruction set that the networks run on here
-    differs: "ODE", "libccd", "ODE, libccd": these compute other bytes here than on the machines of the recorded
-        hashes (compiled with fused multiply-adds, as by Debian for arm64, or another version), and so do worlds
-        with contacts; "": none, or no simulation half
+    kernels: instruction set that networks use on this machine
+    differs: "ODE", "libccd" or "ODE, libccd": libraries whose results here differ in their last bits from those
+        behind the recorded hashes (another version, or compiled with fused multiply-adds, as Debian does for
+        arm64); worlds with contacts differ too then. "": none, or a build without simulation
     """
 
     struct_size: int
@@ -468,18 +468,20 @@ rdm_stop = CFUNCTYPE(c_int32, c_void_p, c_int64)
 
 
 class rdm_host(Structure):
-    """what a host gives in the place of the C library and of our threads
+    """memory, log and threads of the host, used instead of the C library's
+    and redman's own
 
     struct_size: bytes
     reserved: 0
     user: passed back to every hook; may be NULL
-    alloc: `bytes` at a multiple of `align` (a power of two up to 64), or NULL. NULL hook: the C library's.
+    alloc: Returns `bytes` of memory at a multiple of `align` (a power of two up to 64), or NULL when there is
+        none. Hook NULL: the C library's allocator.
     release: required with alloc
-    log: 0 info, 1 warning, 2 error; NULL: silent
-    parallel: Must run body(context, i) once for every i in [0, n), each on one OS thread, and return when all
-        are done; may be serial. NULL: redman's own workers. Where it runs fewer, one twice or another one, or
-        returns before all are done, the call that needed it is STATE and says so: it was done in part, and
-        bodies that come later do nothing.
+    log: level: 0 info, 1 warning, 2 error; hook NULL: nothing is logged
+    parallel: Must call body(context, i) exactly once for each i in [0, n), each call within one OS thread, and
+        return when all have returned; one after the other is fine. Hook NULL: redman's own worker threads. If
+        it skips an i, repeats one, passes another number or returns early, the redman call that used it returns
+        STATE and says so: its work was done in part, and late calls of body do nothing.
     """
 
     struct_size: int
@@ -504,7 +506,7 @@ class Option(Record):
     """frozen layout: one key and its value
 
     key: case is ignored and '-' equals '_'
-    text: value as one line of text ("0.5", "0.7..1.3", "egg"); NULL: number is it
+    text: value as one line of text ("0.5", "0.7..1.3", "egg"); NULL: `number` is the value
     number: value when text is NULL
     """
 
@@ -517,7 +519,7 @@ class rdm_option(Structure):
     """frozen layout: one key and its value
 
     key: case is ignored and '-' equals '_'
-    text: value as one line of text ("0.5", "0.7..1.3", "egg"); NULL: number is it
+    text: value as one line of text ("0.5", "0.7..1.3", "egg"); NULL: `number` is the value
     number: value when text is NULL
     """
 
@@ -537,12 +539,12 @@ class OptionSpec(Record):
     kind: OptionKind.NUMBER, OptionKind.INTEGER, OptionKind.FLAG, OptionKind.TEXT
     live: flag: Agent.set may change it after creation
     level: OptionLevel.BASIC, OptionLevel.ADVANCED, OptionLevel.LEGACY
-    key: static; its last word FIELD: any name of a field, or a pattern with '*'
+    key: static; a last word FIELD stands for the name of any field, or a pattern with '*'
     help: one line, with the unit
-    text: default of a text option, or of a number that is a range, else NULL
-    choices: text: allowed words "a|b|c", NULL: any; number, integer: "a..b": takes a range "0.7..1.3" too,
-        which each world draws from at a reset; else NULL
-    number: default of number, integer, flag; of a range its middle
+    text: default of a text option, or of a number whose default is a range; else NULL
+    choices: text: the allowed words "a|b|c", NULL: any text; number, integer: "a..b" where a range "0.7..1.3"
+        is allowed too, from which each world draws at a reset; else NULL
+    number: default of a number, integer or flag; for a range, its middle
     low: inclusive bounds
     high: inclusive bounds
     """
@@ -566,12 +568,12 @@ class rdm_option_spec(Structure):
     kind: RDM_KIND_NUMBER, RDM_KIND_INTEGER, RDM_KIND_FLAG, RDM_KIND_TEXT
     live: flag: rdm_agent_set_option may change it after creation
     level: RDM_LEVEL_BASIC, RDM_LEVEL_ADVANCED, RDM_LEVEL_LEGACY
-    key: static; its last word FIELD: any name of a field, or a pattern with '*'
+    key: static; a last word FIELD stands for the name of any field, or a pattern with '*'
     help: one line, with the unit
-    text: default of a text option, or of a number that is a range, else NULL
-    choices: text: allowed words "a|b|c", NULL: any; number, integer: "a..b": takes a range "0.7..1.3" too,
-        which each world draws from at a reset; else NULL
-    number: default of number, integer, flag; of a range its middle
+    text: default of a text option, or of a number whose default is a range; else NULL
+    choices: text: the allowed words "a|b|c", NULL: any text; number, integer: "a..b" where a range "0.7..1.3"
+        is allowed too, from which each world draws at a reset; else NULL
+    number: default of a number, integer or flag; for a range, its middle
     low: inclusive bounds
     high: inclusive bounds
     """
@@ -603,10 +605,10 @@ class rdm_option_spec(Structure):
 
 
 class Pose(Record):
-    """frozen layout: 7 doubles, where a frame is in another
+    """frozen layout, 7 doubles: where one frame is in another
 
     p: its origin, m
-    q: its rotation (x, y, z, w), unit; given, all 0: none
+    q: its rotation, a unit quaternion (x, y, z, w); all 0 in an argument: no rotation
     """
 
     p: tuple[float, ...]
@@ -614,10 +616,10 @@ class Pose(Record):
 
 
 class rdm_pose(Structure):
-    """frozen layout: 7 doubles, where a frame is in another
+    """frozen layout, 7 doubles: where one frame is in another
 
     p: its origin, m
-    q: its rotation (x, y, z, w), unit; given, all 0: none
+    q: its rotation, a unit quaternion (x, y, z, w); all 0 in an argument: no rotation
     """
 
     p: Any
@@ -629,7 +631,7 @@ class rdm_pose(Structure):
 
 
 class Field(Record):
-    """frozen layout: a run of observation entries
+    """frozen layout: consecutive entries of an observation
 
     name: "right.joint_position"
     unit: "rad", "m/s", "1" after scaling ...
@@ -644,7 +646,7 @@ class Field(Record):
 
 
 class rdm_field(Structure):
-    """frozen layout: a run of observation entries
+    """frozen layout: consecutive entries of an observation
 
     name: "right.joint_position"
     unit: "rad", "m/s", "1" after scaling ...
@@ -665,14 +667,14 @@ class rdm_field(Structure):
 
 
 class FieldInfo(Record):
-    """what a run of observation entries is
+    """what consecutive entries of an observation are
 
     offset: first entry
     count: entries
     name: "right.joint_position"
     unit: "rad", "m/s", "1" after scaling ...
-    low: bounds that every entry keeps; NaN: none
-    high: bounds that every entry keeps; NaN: none
+    low: bounds of every entry; NaN: none
+    high: bounds of every entry; NaN: none
     """
 
     offset: int
@@ -684,7 +686,7 @@ class FieldInfo(Record):
 
 
 class rdm_field_info(Structure):
-    """what a run of observation entries is
+    """what consecutive entries of an observation are
 
     struct_size: in: bytes
     offset: first entry
@@ -692,8 +694,8 @@ class rdm_field_info(Structure):
     reserved: 0
     name: "right.joint_position"
     unit: "rad", "m/s", "1" after scaling ...
-    low: bounds that every entry keeps; NaN: none
-    high: bounds that every entry keeps; NaN: none
+    low: bounds of every entry; NaN: none
+    high: bounds of every entry; NaN: none
     """
 
     struct_size: int
@@ -748,18 +750,18 @@ class rdm_tensor(Structure):
 
 
 class Spec(Record):
-    """sizes of a pool's rows; what a policy is checked against
+    """sizes of a pool's rows; policies are checked against it
 
     control_dt: s between steps
     obs_dim: count
     action_dim: count
     cost_dim: count
     max_steps: control steps of an episode
-    layout_hash: of field names, counts and action order: policies carry it
+    layout_hash: hash of field names, counts and action order; policy files keep it
     num_fields: for Pool.fields
     num_shapes: for Pool.shapes
     num_joints: of all robots
-    task: index for Task.number
+    task: index for rdm_task_at and the like
     action_repeat: control steps in one Pool.step: option action_repeat
     """
 
@@ -777,7 +779,7 @@ class Spec(Record):
 
 
 class rdm_spec(Structure):
-    """sizes of a pool's rows; what a policy is checked against
+    """sizes of a pool's rows; policies are checked against it
 
     struct_size: in: bytes
     control_dt: s between steps
@@ -785,11 +787,11 @@ class rdm_spec(Structure):
     action_dim: count
     cost_dim: count
     max_steps: control steps of an episode
-    layout_hash: of field names, counts and action order: policies carry it
+    layout_hash: hash of field names, counts and action order; policy files keep it
     num_fields: for rdm_pool_field_at
     num_shapes: for rdm_pool_shape_at
     num_joints: of all robots
-    task: index for rdm_task_at and its like
+    task: index for rdm_task_at and the like
     action_repeat: control steps in one rdm_pool_step: option action_repeat
     reserved: 0
     """
@@ -825,7 +827,7 @@ class rdm_spec(Structure):
 
 
 class PolicyInfo(Record):
-    """what a policy file tells of its network
+    """what a policy file says of its network
 
     obs_dim: count
     action_dim: count
@@ -836,14 +838,14 @@ class PolicyInfo(Record):
     num_params: of the network
     task: "" for a host's own environment
     activation: of the hidden layers: "tanh", "elu", "relu"; static
-    num_points: of the cloud beside each row, for Policy.act; 0: it reads none
-    num_point_classes: that it tells points apart by, 0: none
-    num_features: that its encoder makes of a cloud, 0 without
+    num_points: points of the cloud beside each row, for Policy.act; 0: it reads no clouds
+    num_point_classes: number of classes of points that it distinguishes; 0: none
+    num_features: number of features that its encoder computes from a cloud; 0: no encoder
     point_color: whether it reads the colours of points: 0, 1
-    num_fields: for Policy.fields; 0: the file says none
-    novelty: whether Policy.novelty tells: 0, 1
-    generation: which network: the low 32 bits are the epochs that its agent had learned, the high ones a
-        checksum of it; what was sampled by another one is stale. 0: unknown
+    num_fields: for Policy.fields; 0: the file has none
+    novelty: whether Policy.novelty is available: 0, 1
+    generation: which network it is: the low 32 bits are the epochs that its agent had learned, the high ones a
+        checksum. Data sampled by another generation are stale. 0: unknown
     """
 
     obs_dim: int
@@ -865,7 +867,7 @@ class PolicyInfo(Record):
 
 
 class rdm_policy_info(Structure):
-    """what a policy file tells of its network
+    """what a policy file says of its network
 
     struct_size: in: bytes
     obs_dim: count
@@ -877,14 +879,14 @@ class rdm_policy_info(Structure):
     num_params: of the network
     task: "" for a host's own environment
     activation: of the hidden layers: "tanh", "elu", "relu"; static
-    num_points: of the cloud beside each row, for rdm_policy_act_points; 0: it reads none
-    num_point_classes: that it tells points apart by, 0: none
-    num_features: that its encoder makes of a cloud, 0 without
+    num_points: points of the cloud beside each row, for rdm_policy_act_points; 0: it reads no clouds
+    num_point_classes: number of classes of points that it distinguishes; 0: none
+    num_features: number of features that its encoder computes from a cloud; 0: no encoder
     point_color: whether it reads the colours of points: 0, 1
-    num_fields: for rdm_policy_field_at; 0: the file says none
-    novelty: whether rdm_policy_novelty tells: 0, 1
-    generation: which network: the low 32 bits are the epochs that its agent had learned, the high ones a
-        checksum of it; what was sampled by another one is stale. 0: unknown
+    num_fields: for rdm_policy_field_at; 0: the file has none
+    novelty: whether rdm_policy_novelty is available: 0, 1
+    generation: which network it is: the low 32 bits are the epochs that its agent had learned, the high ones a
+        checksum. Data sampled by another generation are stale. 0: unknown
     """
 
     struct_size: int
@@ -939,8 +941,8 @@ class Task(Record):
     num_options: for Task.options
     num_cameras: for Task.cameras
     num_defaults: for Task.defaults
-    action_order: what the entries of the action are: "thrust, turn"; of hands groups, "right joints, force,
-        torque"; default options
+    action_order: what the entries of the action are: "thrust, turn"; for hands groups of entries, "right
+        joints, force, torque"; default options
     """
 
     control_dt: float
@@ -972,8 +974,8 @@ class rdm_task(Structure):
     num_options: for rdm_task_option_at
     num_cameras: for rdm_task_camera_at
     num_defaults: for rdm_task_default_at
-    action_order: what the entries of the action are: "thrust, turn"; of hands groups, "right joints, force,
-        torque"; default options
+    action_order: what the entries of the action are: "thrust, turn"; for hands groups of entries, "right
+        joints, force, torque"; default options
     """
 
     struct_size: int
@@ -1046,13 +1048,14 @@ class rdm_cost_info(Structure):
 class CameraInfo(Record):
     """a pinhole camera
 
-    mount: 0: the world's frame; k > 0: of link k - 1 of the scene; -k: of the base of its articulation k - 1
-        (cameras that ride on a robot)
+    mount: what it is fixed to; 0: the world; k > 0: link k - 1 of the scene; -k: the base of its articulation
+        (robot) k - 1
     name: "front"
     eye: m, in the frame that mount names
     target: m, likewise; the optical axis runs from eye to target
-    up: likewise: what points up in the picture; where it lies along the axis, -x of the world does
-    fov_y: rad: in pixels, the focal length is half a picture's height / tan(fov_y / 2)
+    up: likewise: what points up in the picture; where it is parallel to the optical axis, -x of the world is
+        used
+    fov_y: vertical field of view, rad; the focal length in pixels is half the picture's height / tan(fov_y / 2)
     cx: where the optical axis meets the picture: to the right of its centre, as a share of its width
     cy: likewise: below its centre, as a share of its height
     """
@@ -1071,13 +1074,14 @@ class rdm_camera_info(Structure):
     """a pinhole camera
 
     struct_size: in: bytes
-    mount: 0: the world's frame; k > 0: of link k - 1 of the scene; -k: of the base of its articulation k - 1
-        (cameras that ride on a robot)
+    mount: what it is fixed to; 0: the world; k > 0: link k - 1 of the scene; -k: the base of its articulation
+        (robot) k - 1
     name: "front"
     eye: m, in the frame that mount names
     target: m, likewise; the optical axis runs from eye to target
-    up: likewise: what points up in the picture; where it lies along the axis, -x of the world does
-    fov_y: rad: in pixels, the focal length is half a picture's height / tan(fov_y / 2)
+    up: likewise: what points up in the picture; where it is parallel to the optical axis, -x of the world is
+        used
+    fov_y: vertical field of view, rad; the focal length in pixels is half the picture's height / tan(fov_y / 2)
     cx: where the optical axis meets the picture: to the right of its centre, as a share of its width
     cy: likewise: below its centre, as a share of its height
     """
@@ -1151,15 +1155,15 @@ class JointInfo(Record):
 
     kind: JointKind: revolute joints in rad and N m, prismatic in m and N
     parent: the joint before it on the way from the base, -1: none
-    action: entry of the action (of a robot, in a scene too: its command) that is its own; -1: none, or only the
-        functions of a host's task know
+    action: the entry of the action that moves it (of a robot, or in a scene: its command); -1: none, or known
+        only to the functions of a host's task
     name: "FFJ2"; of a pool "right_FFJ2"
     lower: range, rad (m)
     upper: range, rad (m)
     velocity: how fast its drive's target may move, rad/s (m/s); NaN: not known
-    kp: of its drive, N m/rad (N/m); 0: coupled, or no spring
-    kd: of its drive, N m s/rad (N s/m)
-    effort: bound of its drive's torque, N m (N)
+    kp: stiffness of its drive, N m/rad (N/m); 0: coupled, or no spring
+    kd: damping of its drive, N m s/rad (N s/m)
+    effort: largest torque (force) of its drive, N m (N)
     """
 
     kind: int
@@ -1180,15 +1184,15 @@ class rdm_joint_info(Structure):
     struct_size: in: bytes
     kind: RDM_JOINT_*: revolute joints in rad and N m, prismatic in m and N
     parent: the joint before it on the way from the base, -1: none
-    action: entry of the action (of a robot, in a scene too: its command) that is its own; -1: none, or only the
-        functions of a host's task know
+    action: the entry of the action that moves it (of a robot, or in a scene: its command); -1: none, or known
+        only to the functions of a host's task
     name: "FFJ2"; of a pool "right_FFJ2"
     lower: range, rad (m)
     upper: range, rad (m)
     velocity: how fast its drive's target may move, rad/s (m/s); NaN: not known
-    kp: of its drive, N m/rad (N/m); 0: coupled, or no spring
-    kd: of its drive, N m s/rad (N s/m)
-    effort: bound of its drive's torque, N m (N)
+    kp: stiffness of its drive, N m/rad (N/m); 0: coupled, or no spring
+    kd: damping of its drive, N m s/rad (N s/m)
+    effort: largest torque (force) of its drive, N m (N)
     """
 
     struct_size: int
@@ -1227,11 +1231,11 @@ class ObjectInfo(Record):
     alias: another name, "025_mug"; NULL: none
     summary: one line, may be ""
     shape: "capsule r 0.03, straight part 0.02": kind and sizes in m
-    mass: kg; hull: of the default points, 500 kg/m3
+    mass: kg; for "hull": of its default points, at 500 kg/m3
     friction: friction coefficient, on dry surfaces
-    low: m, lowest corner of the box around what can be touched of it, from its centre of mass, along the axes
+    low: m, lowest corner of the box around its touchable shapes, relative to its centre of mass, along the axes
         of its description
-    high: m, highest corner of it
+    high: m, highest corner of the box
     """
 
     kind: int
@@ -1258,11 +1262,11 @@ class rdm_object_info(Structure):
     alias: another name, "025_mug"; NULL: none
     summary: one line, may be ""
     shape: "capsule r 0.03, straight part 0.02": kind and sizes in m
-    mass: kg; hull: of the default points, 500 kg/m3
+    mass: kg; for "hull": of its default points, at 500 kg/m3
     friction: friction coefficient, on dry surfaces
-    low: m, lowest corner of the box around what can be touched of it, from its centre of mass, along the axes
+    low: m, lowest corner of the box around its touchable shapes, relative to its centre of mass, along the axes
         of its description
-    high: m, highest corner of it
+    high: m, highest corner of the box
     """
 
     struct_size: int
@@ -1300,17 +1304,17 @@ class rdm_pool_config(Structure):
     num_envs: worlds, 1..65536, default 1
     task: name, required; copied
     seed: world i draws from stream (seed, i), until a reset names another
-    num_threads: 0 or 1: the caller's only; up to 256; default 0
+    num_threads: 0 or 1: the caller's thread only; up to 256; default 0
     autoreset: RDM_AUTORESET_*, default same step
     options: [num_options], copied; NULL: none
     num_options: count, default 0
     reserved: 0
     host: hooks of this handle, copied; NULL: those of rdm_init
-    settings: options as lines key=value, laid over `options`, copied; NULL: none
-    error: [error_size] the text of a failing call that takes this config; NULL
-    error_size: bytes, terminator included; what is longer is cut
+    settings: options as lines key=value, which override `options`, copied; NULL: none
+    error: [error_size] receives the text when a call that takes this config fails; NULL: not wanted
+    error_size: bytes, terminator included; a longer text is cut
     reserved2: 0
-    user: for a host's own task: rdm_scene_user, rdm_world_user; NULL
+    user: for a host's own task, which reads it by rdm_scene_user and rdm_world_user; may be NULL
     """
 
     struct_size: int
@@ -1348,8 +1352,9 @@ class rdm_pool_config(Structure):
 
 
 class rdm_buffers(Structure):
-    """Rows of world i begin at i * width; 64-byte aligned; the same addresses until destroy or bind.
-    The library writes them inside reset, step and read_state only.
+    """Rows of world i begin at i * width. Arrays are 64-byte aligned and keep their addresses until
+    rdm_pool_destroy or rdm_pool_set_buffers. The library writes them only within calls that change
+    worlds.
 
     struct_size: in: bytes
     reserved: 0
@@ -1357,14 +1362,14 @@ class rdm_buffers(Structure):
     final_obs: [num_envs][obs_dim] last observation where an episode ended, else as obs
     action: [num_envs][action_dim] in [-1, 1], clipped; the host writes
     reward: [num_envs]
-    cost: [num_envs][cost_dim] >= 0; column 0 is the task's paper cost
+    cost: [num_envs][cost_dim] >= 0; column 0 is the cost of the paper
     cost_raw: [num_envs][cost_dim] the measured value behind each cost
     episode_return: [num_envs] sum of rewards; the finished episode's where one ended
     episode_cost: [num_envs][cost_dim] likewise
     episode_step: [num_envs] control steps, likewise
     status: [num_envs] RDM_STATUS_* of the last step or reset
     terminated: [num_envs] 1: the task ended (a fall)
-    truncated: [num_envs] 1: cut by the time limit or a bad status
+    truncated: [num_envs] 1: ended by the time limit or a bad status
     success: [num_envs] 1: the task's success holds in this step
     episode_status: [num_envs] all RDM_STATUS_* of the episode; the finished one's where one ended
     """
@@ -1406,7 +1411,7 @@ class rdm_buffers(Structure):
 
 
 class ShapeInfo(Record):
-    """a part of what the scene is made of, the same for all worlds
+    """a shape of the scene, the same for all worlds
 
     kind: ShapeKind.SPHERE ... ShapeKind.HULL; plane: the half space below z = 0 of its frame
     fixed: flag: never moves
@@ -1423,7 +1428,7 @@ class ShapeInfo(Record):
 
 
 class rdm_shape_info(Structure):
-    """a part of what the scene is made of, the same for all worlds
+    """a shape of the scene, the same for all worlds
 
     struct_size: in: bytes
     kind: RDM_SHAPE_SPHERE ... RDM_SHAPE_HULL; plane: the half space below z = 0 of its frame
@@ -1498,9 +1503,9 @@ class rdm_contact(Structure):
 class PoolStats(Record):
     """counts since create
 
-    contacts_max: largest number of contacts in a substep's list since create, all worlds
-    contacts_mean: mean of the same
-    joint_drift: m, largest gap of any joint now, all worlds
+    contacts_max: largest number of contacts in a substep since create, of all worlds
+    contacts_mean: mean number of contacts in a substep
+    joint_drift: m, largest gap in any joint now, of all worlds
     steps: control steps of one world, summed over worlds
     diverged: steps and resets flagged Status.DIVERGED so far
     overflowed: steps flagged Status.CONTACTS so far
@@ -1508,9 +1513,9 @@ class PoolStats(Record):
     task_failed: steps flagged Status.TASK so far
     unconverged: steps flagged Status.SOLVER so far
     slowed: steps flagged Status.SLOWED so far
-    solver_residual: m/s, what a contact's normal velocity was still wrong by when the last sweep of the last
-        step came to it, the largest of all worlds; NaN: engine ode, not measured
-    violations: control steps so far in which column 0, or a cost with a limit by the task, was above 0
+    solver_residual: m/s, largest error of a contact's normal velocity that the solver's last sweep of the last
+        step found, of all worlds; NaN: engine ode does not measure it
+    violations: control steps so far in which column 0, or a cost that the task limits, was above 0
     """
 
     contacts_max: int
@@ -1531,9 +1536,9 @@ class rdm_pool_stats(Structure):
     """counts since create
 
     struct_size: in: bytes
-    contacts_max: largest number of contacts in a substep's list since create, all worlds
-    contacts_mean: mean of the same
-    joint_drift: m, largest gap of any joint now, all worlds
+    contacts_max: largest number of contacts in a substep since create, of all worlds
+    contacts_mean: mean number of contacts in a substep
+    joint_drift: m, largest gap in any joint now, of all worlds
     steps: control steps of one world, summed over worlds
     diverged: steps and resets flagged RDM_STATUS_DIVERGED so far
     overflowed: steps flagged RDM_STATUS_CONTACTS so far
@@ -1541,9 +1546,9 @@ class rdm_pool_stats(Structure):
     task_failed: steps flagged RDM_STATUS_TASK so far
     unconverged: steps flagged RDM_STATUS_SOLVER so far
     slowed: steps flagged RDM_STATUS_SLOWED so far
-    solver_residual: m/s, what a contact's normal velocity was still wrong by when the last sweep of the last
-        step came to it, the largest of all worlds; NaN: engine ode, not measured
-    violations: control steps so far in which column 0, or a cost with a limit by the task, was above 0
+    solver_residual: m/s, largest error of a contact's normal velocity that the solver's last sweep of the last
+        step found, of all worlds; NaN: engine ode does not measure it
+    violations: control steps so far in which column 0, or a cost that the task limits, was above 0
     """
 
     struct_size: int
@@ -1577,7 +1582,7 @@ class rdm_pool_stats(Structure):
 
 
 class RayHit(Record):
-    """what a ray meets first
+    """what a ray hits first
 
     shape: for Pool.shapes; -1: nothing, all else is NaN
     distance: m, from the origin
@@ -1592,7 +1597,7 @@ class RayHit(Record):
 
 
 class rdm_ray_hit(Structure):
-    """what a ray meets first
+    """what a ray hits first
 
     struct_size: in: bytes
     shape: for rdm_pool_shape_at; -1: nothing, all else is NaN
@@ -1657,7 +1662,7 @@ class rdm_agent_config(Structure):
     action_dim: count, 1..1024, required
     cost_dim: cost columns recorded, 0..RDM_MAX_COSTS, default 1
     num_envs: rows per act, 1..65536, required
-    num_threads: 0 or 1: the caller's only; up to 256; default 0
+    num_threads: 0 or 1: the caller's thread only; up to 256; default 0
     algo: "ppo", "ppo_lag"; copied; default "ppo_lag"
     task: kept in policy files, "" for a host's own environment; copied
     seed: of weights, noise, shuffling; default 0
@@ -1665,18 +1670,19 @@ class rdm_agent_config(Structure):
     control_dt: s, kept in policy files; 0: unknown
     max_steps: control steps of an episode: one that is longer is counted as ended there; 0: unknown
     initial_mean: [action_dim] mean action of the new policy, copied; NULL: 0
-    defaults: [num_defaults] laid under options (a task's); "algo:key" is for one algo
+    defaults: [num_defaults] defaults, such as a task's, which `options` override; "algo:key" is for one
+        algorithm alone
     options: [num_options] the caller's; NULL: none
     num_defaults: count, default 0
     num_options: count, default 0
-    cost_limits: [cost_dim] on the sum over an episode, < 0: none; NULL: option cost_limit for column 0, which
-        stands over [0] where both are given
+    cost_limits: [cost_dim] limit on the sum of each cost over an episode, < 0: none; NULL: option cost_limit
+        for column 0, which overrides [0] where both are given
     host: hooks of this handle, copied; NULL: those of rdm_init
-    settings: options as lines key=value, laid over `options`, copied; NULL: none
-    error: [error_size] the text of a failing call that takes this config; NULL
-    error_size: bytes, terminator included; what is longer is cut
+    settings: options as lines key=value, which override `options`, copied; NULL: none
+    error: [error_size] receives the text when a call that takes this config fails; NULL: not wanted
+    error_size: bytes, terminator included; a longer text is cut
     reserved2: 0
-    fields: [num_fields] parts of a row of obs, for actor_obs and critic_obs, copied; NULL: none
+    fields: [num_fields] fields of an observation, for options actor_obs and critic_obs, copied; NULL: none
     num_fields: count, 0..4096, default 0
     reserved3: 0
     """
@@ -1746,7 +1752,8 @@ class rdm_transition(Structure):
     cost: [num_envs][cost_dim] likewise; NULL only if cost_dim is 0
     terminated: [num_envs] NULL: none
     truncated: [num_envs] NULL: none
-    final_obs: [num_envs][obs_dim] read where truncated; NULL: truncation has value 0
+    final_obs: [num_envs][obs_dim] last observation of an episode, read where truncated; NULL: what follows a
+        truncation is valued 0
     valid: [num_envs] 0: not learned from; NULL: all valid
     success: [num_envs] for the statistics; NULL: none
     steps: [num_envs] control steps in this decision; NULL: action_repeat
@@ -1790,16 +1797,16 @@ class Epoch(Record):
     env_steps: control steps so far, all environments
     episodes: finished so far
     ret: sum of rewards of an episode
-    cost: sum of each cost column of an episode, of what cost_signal says
-    cost_per_step: column 0, per control step; of this epoch's decisions while no episode has ended, and with
+    cost: sum of each cost column over an episode; cost_signal says of what
+    cost_per_step: column 0, per control step; over this epoch's decisions while no episode has ended, and with
         option cost_limit_per_step
     length: control steps of an episode
     fall_rate: share of episodes that terminated
     success_rate: share of episodes with at least one success
-    multiplier: of each cost, 0 where the algorithm has none
-    kl: KL(old || new), summed over action dimensions. First-order algorithms: the mean over the last pass, of
-        each minibatch before its step, so 0 after one pass in one step. Trust regions: of the step that was
-        taken.
+    multiplier: Lagrange multiplier of each cost; 0 where the algorithm has none
+    kl: KL divergence of the new policy from the old, KL(old || new), summed over action dimensions. First-order
+        algorithms: the mean over the minibatches of the last pass, each measured before its step, so 0 when
+        there is a single step. Trust-region algorithms: that of the step taken.
     entropy: of the policy
     learning_rate: of the actor, used in this epoch
     action_std: mean over dimensions
@@ -1809,22 +1816,22 @@ class Epoch(Record):
     clip_fraction: share of samples whose ratio was clipped
     value_reward: mean prediction over the batch
     value_cost: mean prediction over the batch
-    passes: over the data, fewer after an early stop
-    cost_signal: costs are sums of 0: costs, 1: their magnitudes (option cost_signal=raw)
+    passes: passes over the data; fewer after an early stop
+    cost_signal: what costs are sums of; 0: costs, 1: their magnitudes (option cost_signal=raw)
     flags: EpochFlag
-    skipped_gradients: in this epoch, as all counts below: steps left out
-    invalid_rows: decisions with valid 0 that did not only reset
+    skipped_gradients: steps left out for a gradient that was not finite; in this epoch, as all counts below
+    invalid_rows: decisions with valid 0, without those that only reset
     diverged: decisions flagged Status.DIVERGED
     contacts_left_out: decisions flagged Status.CONTACTS
     bad_actions: decisions flagged Status.BAD_ACTION
     task_failed: decisions flagged Status.TASK
     unconverged: decisions flagged Status.SOLVER
     slowed: decisions flagged Status.SLOWED
-    violations: control steps in which column 0, or a cost with a limit by the task, was above 0; -1: not an
-        epoch of Agent.rollout
-    refused: decisions that a shield changed; -1: there was none
-    unproven: of these, where nothing was known to be clean; -1: likewise
-    copied: control steps of the shield's copies; -1: likewise
+    violations: control steps in which column 0, or a cost that the task limits, was above 0; -1: not an epoch
+        of Agent.rollout
+    refused: decisions that a shield changed; -1: there was no shield
+    unproven: of these, decisions for which no way within the budgets was found; -1: likewise
+    copied: control steps simulated in the shield's copies; -1: likewise
     """
 
     epoch: int
@@ -1873,16 +1880,16 @@ class rdm_epoch(Structure):
     env_steps: control steps so far, all environments
     episodes: finished so far
     ret: sum of rewards of an episode
-    cost: sum of each cost column of an episode, of what cost_signal says
-    cost_per_step: column 0, per control step; of this epoch's decisions while no episode has ended, and with
+    cost: sum of each cost column over an episode; cost_signal says of what
+    cost_per_step: column 0, per control step; over this epoch's decisions while no episode has ended, and with
         option cost_limit_per_step
     length: control steps of an episode
     fall_rate: share of episodes that terminated
     success_rate: share of episodes with at least one success
-    multiplier: of each cost, 0 where the algorithm has none
-    kl: KL(old || new), summed over action dimensions. First-order algorithms: the mean over the last pass, of
-        each minibatch before its step, so 0 after one pass in one step. Trust regions: of the step that was
-        taken.
+    multiplier: Lagrange multiplier of each cost; 0 where the algorithm has none
+    kl: KL divergence of the new policy from the old, KL(old || new), summed over action dimensions. First-order
+        algorithms: the mean over the minibatches of the last pass, each measured before its step, so 0 when
+        there is a single step. Trust-region algorithms: that of the step taken.
     entropy: of the policy
     learning_rate: of the actor, used in this epoch
     action_std: mean over dimensions
@@ -1892,25 +1899,25 @@ class rdm_epoch(Structure):
     clip_fraction: share of samples whose ratio was clipped
     value_reward: mean prediction over the batch
     value_cost: mean prediction over the batch
-    passes: over the data, fewer after an early stop
+    passes: passes over the data; fewer after an early stop
     reserved: 0
-    cost_signal: costs are sums of 0: costs, 1: their magnitudes (option cost_signal=raw)
+    cost_signal: what costs are sums of; 0: costs, 1: their magnitudes (option cost_signal=raw)
     reserved2: 0
     flags: RDM_EPOCH_*
     reserved3: 0
-    skipped_gradients: in this epoch, as all counts below: steps left out
-    invalid_rows: decisions with valid 0 that did not only reset
+    skipped_gradients: steps left out for a gradient that was not finite; in this epoch, as all counts below
+    invalid_rows: decisions with valid 0, without those that only reset
     diverged: decisions flagged RDM_STATUS_DIVERGED
     contacts_left_out: decisions flagged RDM_STATUS_CONTACTS
     bad_actions: decisions flagged RDM_STATUS_BAD_ACTION
     task_failed: decisions flagged RDM_STATUS_TASK
     unconverged: decisions flagged RDM_STATUS_SOLVER
     slowed: decisions flagged RDM_STATUS_SLOWED
-    violations: control steps in which column 0, or a cost with a limit by the task, was above 0; -1: not an
-        epoch of rdm_agent_rollout
-    refused: decisions that a shield changed; -1: there was none
-    unproven: of these, where nothing was known to be clean; -1: likewise
-    copied: control steps of the shield's copies; -1: likewise
+    violations: control steps in which column 0, or a cost that the task limits, was above 0; -1: not an epoch
+        of rdm_agent_rollout
+    refused: decisions that a shield changed; -1: there was no shield
+    unproven: of these, decisions for which no way within the budgets was found; -1: likewise
+    copied: control steps simulated in the shield's copies; -1: likewise
     """
 
     struct_size: int
@@ -1996,13 +2003,13 @@ class rdm_epoch(Structure):
 
 
 class rdm_sensors(Structure):
-    """the same addresses until destroy; NULL where the modality is off
+    """addresses stay until rdm_pool_destroy; NULL where the modality is off
 
     struct_size: in: bytes
     num_cameras: of rgb, depth and segmentation, in the order of the option `cameras`
     width: pixels
     height: pixels
-    num_points: of a world, option `points`
+    num_points: points of each world, option `points`
     num_voxels: along each side of the local grid, option `voxels`
     voxel_size: m
     reserved: 0
@@ -2011,16 +2018,16 @@ class rdm_sensors(Structure):
     segmentation: [num_envs][num_cameras][height][width], shape of rdm_pool_shape_at, -1: nothing
     points: [num_envs][num_points][3], world, m; planes are left out
     point_shape: [num_envs][num_points], -1: nothing was seen
-    point_count: [num_envs] points that differ; the rest repeats them in turn, up to those of option
-        goal_points, which come last: the first free body where it is to be brought
-    voxels: [num_envs][num_voxels][num_voxels][num_voxels] (x, y, z) about the task's object: 1 occupied, 0
+    point_count: [num_envs] number of different points; later rows repeat them in turn, up to those of option
+        goal_points, which come last: the first free body at its goal
+    voxels: [num_envs][num_voxels][num_voxels][num_voxels] (x, y, z) around the task's object: 1 occupied, 0
         free, -1 not seen
-    point_class: [num_envs][num_points] what a point lies on: one of the articulations (hands, arms included),
-        then of the free bodies, then anything else, or nothing; last the goal, with option goal_points
-    num_classes: of those; 0 where points are off
+    point_class: [num_envs][num_points] what a point lies on, numbered in this order: the articulations (a hand
+        with its arm), the free bodies, anything else or nothing, and with option goal_points the goal
+    num_classes: number of these classes; 0 where points are off
     reserved2: 0
-    point_color: [num_envs][num_points][3] of what a point lies on, sRGB, 0 for nothing; NULL without option
-        point_color
+    point_color: [num_envs][num_points][3] colour of what a point lies on, sRGB, 0 for nothing; NULL without
+        option point_color
     """
 
     struct_size: int
@@ -2095,8 +2102,8 @@ class PretrainConfig(Record):
     num_labels: kinds of points to tell apart, 2..64, required
     epochs: passes over the clouds, 1..100000, default 20
     batch_rows: clouds of a minibatch, 1..4096, default 16
-    learning_rate: Adam's, 0..10, default 1e-3, falling in a line to a tenth
-    validation: share of the clouds that are not learned from, 0..0.9, default 0.1
+    learning_rate: of Adam, 0..10, default 1e-3, falling linearly to a tenth
+    validation: share of the clouds held back for validation, 0..0.9, default 0.1
     seed: of the head's weights, of shuffling and of the choice, default 0
     """
 
@@ -2115,8 +2122,8 @@ class rdm_pretrain_config(Structure):
     num_labels: kinds of points to tell apart, 2..64, required
     epochs: passes over the clouds, 1..100000, default 20
     batch_rows: clouds of a minibatch, 1..4096, default 16
-    learning_rate: Adam's, 0..10, default 1e-3, falling in a line to a tenth
-    validation: share of the clouds that are not learned from, 0..0.9, default 0.1
+    learning_rate: of Adam, 0..10, default 1e-3, falling linearly to a tenth
+    validation: share of the clouds held back for validation, 0..0.9, default 0.1
     seed: of the head's weights, of shuffling and of the choice, default 0
     """
 
@@ -2144,9 +2151,9 @@ class PretrainReport(Record):
     train_rows: clouds
     validation_rows: clouds
     train_loss: of the last epoch, mean cross-entropy of a point, nats
-    validation_loss: likewise, of the clouds held back; 0 without
-    accuracy: share of points of these that are told right; of all clouds without
-    most_common: share that always saying the most common label gets right
+    validation_loss: likewise, over the clouds held back; 0 without these
+    accuracy: share of points classified correctly, of the clouds held back; without these, of all clouds
+    most_common: accuracy of always answering with the most common label
     """
 
     train_rows: int
@@ -2165,9 +2172,9 @@ class rdm_pretrain_report(Structure):
     validation_rows: clouds
     reserved: 0
     train_loss: of the last epoch, mean cross-entropy of a point, nats
-    validation_loss: likewise, of the clouds held back; 0 without
-    accuracy: share of points of these that are told right; of all clouds without
-    most_common: share that always saying the most common label gets right
+    validation_loss: likewise, over the clouds held back; 0 without these
+    accuracy: share of points classified correctly, of the clouds held back; without these, of all clouds
+    most_common: accuracy of always answering with the most common label
     """
 
     struct_size: int
@@ -2197,16 +2204,16 @@ class rdm_map_config(Structure):
     reserved: 0
     resolution: side of a voxel, m, 0.001 to 10, default 0.02
     memory: bytes that tree and workspace may take, 2^20 to 2^36, default 2^26
-    max_range: m; longer rays clear their way so far and add no occupied voxel; 0: none is too long; default 4,
-        with which looks of a pool's cameras fit into memory
-    hit: probability of occupied where a ray ends, 0.5 to 0.999, default 0.7
-    miss: the same where one passes, 0.001 to 0.5, default 0.4
-    low: no probability goes below, 0.001 to 0.5, default 0.1192
-    high: no probability goes above, 0.5 to 0.999, default 0.971
+    max_range: m; longer rays clear voxels up to here and add no occupied one; 0: no limit; default 4, with
+        which scans by a pool's cameras fit into memory
+    hit: probability that a voxel is occupied where a ray ends, 0.5 to 0.999, default 0.7
+    miss: the same where a ray passes, 0.001 to 0.5, default 0.4
+    low: lowest probability of a voxel, 0.001 to 0.5, default 0.1192
+    high: highest probability of a voxel, 0.5 to 0.999, default 0.971
     threshold: occupied from this probability on, low to high, default 0.5
     host: hooks for the workspace, copied; NULL: those of rdm_init
-    error: [error_size] the text of a failing call that takes this config; NULL
-    error_size: bytes, terminator included; what is longer is cut
+    error: [error_size] receives the text when a call that takes this config fails; NULL: not wanted
+    error_size: bytes, terminator included; a longer text is cut
     reserved2: 0
     """
 
@@ -2245,12 +2252,12 @@ class rdm_map_config(Structure):
 class MapInfo(Record):
     """how full a map is
 
-    full: 1: updates have been dropped since create, clear or load
-    resolution: m; a load takes the file's
+    full: 1: updates have been dropped since create, clear or read
+    resolution: m; reading a file takes over the file's
     nodes: of the tree
     bytes: of the tree
     bytes_max: memory less the workspace
-    dropped: voxel updates that found no memory, since create, clear or load
+    dropped: voxel updates that found no memory, since create, clear or read
     """
 
     full: int
@@ -2265,12 +2272,12 @@ class rdm_map_info(Structure):
     """how full a map is
 
     struct_size: in: bytes
-    full: 1: updates have been dropped since create, clear or load
-    resolution: m; a load takes the file's
+    full: 1: updates have been dropped since create, clear or read
+    resolution: m; reading a file takes over the file's
     nodes: of the tree
     bytes: of the tree
     bytes_max: memory less the workspace
-    dropped: voxel updates that found no memory, since create, clear or load
+    dropped: voxel updates that found no memory, since create, clear or read
     """
 
     struct_size: int
@@ -2328,11 +2335,11 @@ class rdm_actor_config(Structure):
     seed: of the noise; default 0
     stochastic: 1: actions are sampled, with the noise correlation of the policy; default 0: the mean
     reserved: 0
-    center: [action_dim] in [-1, 1] that the environment adds to every action it is given, and the actor
-        subtracts (the sum is right to a rounding); copied; NULL: 0
+    center: [action_dim] offset in [-1, 1] that the environment adds to every action; the actor subtracts it, so
+        that the sum is the policy's action up to rounding; copied; NULL: 0
     host: hooks of this handle, copied; NULL: those of rdm_init
-    error: [error_size] the text of a failing call that takes this config; NULL
-    error_size: bytes, terminator included; what is longer is cut
+    error: [error_size] receives the text when a call that takes this config fails; NULL: not wanted
+    error_size: bytes, terminator included; a longer text is cut
     reserved2: 0
     """
 
@@ -2368,22 +2375,23 @@ class rdm_planner_config(Structure):
     """what a planner is made from
 
     struct_size: bytes, set by rdm_planner_config_init
-    num_threads: of the rollouts; 0: as many as the pool has; default 0
-    pool: rollouts have its task and options; required; not kept
+    num_threads: threads of the rollouts; 0: as many as the pool has; default 0
+    pool: rollouts have its task and options; required; needed only during creation
     seed: of the noise; default 0
     noise: [action_dim] standard deviation of each entry, 0 to 10, copied; NULL: option noise
-    cost_limits: [cost_dim] on the sum over an episode, < 0: none, copied; NULL: the task's on column 0
-    policy: proposes: sample 0 of the first iteration is its rollout, the others add noise to that; must outlive
-        the planner; NULL: none
-    agent: its critic values states at the horizon's end; must outlive the planner, and not be in another
-        thread's use while one plans; NULL: none
+    cost_limits: [cost_dim] limit on the sum of each cost over an episode, < 0: none, copied; NULL: the task's
+        on column 0
+    policy: proposes plans: sample 0 of the first iteration is its rollout, the others add noise to that; must
+        outlive the planner; NULL: none
+    agent: its critic values the states at the horizon's end; must outlive the planner, and no other thread may
+        use it while one plans; NULL: none
     options: [num_options] as rdm_planner_option_at lists them, copied; NULL: none
     num_options: count, default 0
     reserved: 0
     host: hooks of this handle, copied; NULL: those of rdm_init
-    settings: options as lines key=value, laid over `options`, copied; NULL: none
-    error: [error_size] the text of a failing call that takes this config; NULL
-    error_size: bytes, terminator included; what is longer is cut
+    settings: options as lines key=value, which override `options`, copied; NULL: none
+    error: [error_size] receives the text when a call that takes this config fails; NULL: not wanted
+    error_size: bytes, terminator included; a longer text is cut
     reserved2: 0
     stop: asked by rdm_planner_act before every step of its rollouts; NULL: plans are always finished
     user: given to `stop`; may be NULL
@@ -2434,7 +2442,7 @@ class PlannerSpec(Record):
 
     samples: worlds rolled out in an iteration
     horizon: steps of the pool
-    knots: of the noise, the horizon at most
+    knots: support points of the noise, at most `horizon`
     action_dim: count
     cost_dim: count
     """
@@ -2452,7 +2460,7 @@ class rdm_planner_spec(Structure):
     struct_size: in: bytes
     samples: worlds rolled out in an iteration
     horizon: steps of the pool
-    knots: of the noise, the horizon at most
+    knots: support points of the noise, at most `horizon`
     action_dim: count
     cost_dim: count
     """
@@ -2476,14 +2484,14 @@ class rdm_planner_spec(Structure):
 class PlanInfo(Record):
     """what a call of Planner.act found
 
-    planned: 1; 0: the plan was followed, all else but cut and steps is 0
+    planned: 1: it planned; 0: the plan was followed, and all else but cut and steps is 0
     best: sample that is best in the last iteration that was finished
     cut: 1: config.stop ended it early; else 0
-    ret: of that sample: discounted sum of rewards, and the critic's value
+    ret: of that sample: discounted sum of rewards plus the critic's value
     cost: of that sample, sums of each column
-    feasible_share: of that iteration's samples: within what the limits leave
+    feasible_share: share of that iteration's samples within what the limits leave
     steps: control steps of all rollouts
-    iterations: finished: option iterations, or fewer with cut
+    iterations: iterations finished: option iterations, or fewer with cut
     """
 
     planned: int
@@ -2500,14 +2508,14 @@ class rdm_plan_info(Structure):
     """what a call of rdm_planner_act found
 
     struct_size: in: bytes
-    planned: 1; 0: the plan was followed, all else but cut and steps is 0
+    planned: 1: it planned; 0: the plan was followed, and all else but cut and steps is 0
     best: sample that is best in the last iteration that was finished
     cut: 1: config.stop ended it early; else 0
-    ret: of that sample: discounted sum of rewards, and the critic's value
+    ret: of that sample: discounted sum of rewards plus the critic's value
     cost: of that sample, sums of each column
-    feasible_share: of that iteration's samples: within what the limits leave
+    feasible_share: share of that iteration's samples within what the limits leave
     steps: control steps of all rollouts
-    iterations: finished: option iterations, or fewer with cut
+    iterations: iterations finished: option iterations, or fewer with cut
     reserved: 0
     """
 
@@ -2538,9 +2546,9 @@ class rdm_plan_info(Structure):
 class Guard(Record):
     """a half space of a pool's actions, clipped to [-1, 1]
 
-    column: of the cost that is 0 in every step while all guards of that column are kept
+    column: of the cost that is 0 in every step as long as all guards of that column are kept
     entry: the only entry of the normal that is not 0; -1: there are several
-    bound: of normal . action, at most
+    bound: largest value of normal . action
     """
 
     column: int
@@ -2552,9 +2560,9 @@ class rdm_guard(Structure):
     """a half space of a pool's actions, clipped to [-1, 1]
 
     struct_size: in: bytes
-    column: of the cost that is 0 in every step while all guards of that column are kept
+    column: of the cost that is 0 in every step as long as all guards of that column are kept
     entry: the only entry of the normal that is not 0; -1: there are several
-    bound: of normal . action, at most
+    bound: largest value of normal . action
     """
 
     struct_size: int
@@ -2573,22 +2581,23 @@ class rdm_shield_config(Structure):
     """what a shield is made from
 
     struct_size: bytes, set by rdm_shield_config_init
-    num_threads: of the copies, 0 to 256; 0: as many as the pool has; default 0
-    pool: whose task, options and number of worlds it is for; required; not kept
+    num_threads: threads of the copies, 0 to 256; 0: as many as the pool has; default 0
+    pool: the shield is for its task, options and number of worlds; required; needed only during creation
     seed: of noisy actions; default 0
     policy: the first backup, as rdm_shield_add_policy; NULL: none
-    steps: of the pool that a decision lasts, 1 to 1000; 0: as long as the policy holds an action, 1 without;
-        default 0
+    steps: steps of the pool that a decision lasts, 1 to 1000; 0: as long as the policy holds an action, 1
+        without a policy; default 0
     reserved: 0
-    budgets: [cost_dim] on the sum of each cost over an episode, copied; < 0: the cost is not looked at; NULL: 0
-        for column 0, others are not looked at. Of what an episode had spent beyond it before, no more comes
+    budgets: [cost_dim] bound on the sum of each cost over an episode, copied; < 0: the cost is ignored; NULL: 0
+        for column 0, others are ignored. In an episode that has already exceeded one, no more of that cost is
+        allowed
     options: [num_options] as rdm_shield_option_at lists them, copied; NULL: none
     num_options: count, default 0
     reserved2: 0
     host: hooks of this handle, copied; NULL: those of rdm_init
-    settings: options as lines key=value, laid over `options`, copied; NULL: none
-    error: [error_size] the text of a failing call that takes this config; NULL
-    error_size: bytes, terminator included; what is longer is cut
+    settings: options as lines key=value, which override `options`, copied; NULL: none
+    error: [error_size] receives the text when a call that takes this config fails; NULL: not wanted
+    error_size: bytes, terminator included; a longer text is cut
     reserved3: 0
     """
 
@@ -2632,12 +2641,12 @@ class ShieldRow(Record):
     """what was done in a world's last decision, and why
 
     kind: ShieldKind
-    column: of what was refused: the cost that it would have met, -1: it was not, or the copy diverged; of what
-        was projected: of the guard that it broke most, -1: the host's own
-    ahead: control steps until that, 0: nothing was refused
-    backup: that the plan continues by: a policy's number, then zero, then hold, of those that it has; -1: no
-        other way was looked for
-    planned: decisions that its plan still has, with the one to come next
+    column: when refused, the cost whose budget it would have exceeded, -1: the copy diverged; when projected,
+        the column of the guard that it broke most, -1: the host's own; else -1
+    ahead: control steps until that; 0: nothing was refused
+    backup: the backup that continues the plan: policies are numbered first, then zero, then hold, of those that
+        it has; -1: no other plan was looked for
+    planned: decisions that are left in its plan, the next one included
     """
 
     kind: int
@@ -2652,12 +2661,12 @@ class rdm_shield_row(Structure):
 
     struct_size: in: bytes
     kind: RDM_SHIELD_*
-    column: of what was refused: the cost that it would have met, -1: it was not, or the copy diverged; of what
-        was projected: of the guard that it broke most, -1: the host's own
-    ahead: control steps until that, 0: nothing was refused
-    backup: that the plan continues by: a policy's number, then zero, then hold, of those that it has; -1: no
-        other way was looked for
-    planned: decisions that its plan still has, with the one to come next
+    column: when refused, the cost whose budget it would have exceeded, -1: the copy diverged; when projected,
+        the column of the guard that it broke most, -1: the host's own; else -1
+    ahead: control steps until that; 0: nothing was refused
+    backup: the backup that continues the plan: policies are numbered first, then zero, then hold, of those that
+        it has; -1: no other plan was looked for
+    planned: decisions that are left in its plan, the next one included
     """
 
     struct_size: int
@@ -2680,12 +2689,12 @@ class ShieldStats(Record):
     """counts since creation, of all worlds
 
     decisions: count
-    inquiries: decisions that copies were asked about
-    failed: inquiries whose proposed way met a cost
+    inquiries: decisions that were tried in copies
+    failed: of these, those whose proposed action would have exceeded a budget
     changed: decisions of ShieldKind.CHANGED
-    planned: of ShieldKind.PLAN
-    unproven: of ShieldKind.UNPROVEN
-    copied: control steps that copies took
+    planned: decisions of ShieldKind.PLAN
+    unproven: decisions of ShieldKind.UNPROVEN
+    copied: control steps that copies simulated
     projected: decisions of ShieldKind.PROJECTED
     """
 
@@ -2705,12 +2714,12 @@ class rdm_shield_stats(Structure):
     struct_size: in: bytes
     reserved: 0
     decisions: count
-    inquiries: decisions that copies were asked about
-    failed: inquiries whose proposed way met a cost
+    inquiries: decisions that were tried in copies
+    failed: of these, those whose proposed action would have exceeded a budget
     changed: decisions of RDM_SHIELD_CHANGED
-    planned: of RDM_SHIELD_PLAN
-    unproven: of RDM_SHIELD_UNPROVEN
-    copied: control steps that copies took
+    planned: decisions of RDM_SHIELD_PLAN
+    unproven: decisions of RDM_SHIELD_UNPROVEN
+    copied: control steps that copies simulated
     projected: decisions of RDM_SHIELD_PROJECTED
     """
 
@@ -2745,15 +2754,15 @@ class rdm_recording_config(Structure):
     obs_dim: count, 1..16384, required
     action_dim: count, 1..1024, required
     cost_dim: count, 0..RDM_MAX_COSTS, default 0
-    task: kept in files, "" for a host's own environment; to 63 bytes, copied; default ""
+    task: kept in files, "" for a host's own environment; up to 63 bytes, copied; default ""
     layout_hash: kept in files; 0: unknown
-    state_bytes: of one world's state, to 2^30; 0: no states are kept; default 0
-    capacity: rows, 0..2^40, for which memory is taken at once; more grow; default 0
+    state_bytes: of one world's state, up to 2^30; 0: no states are kept; default 0
+    capacity: rows, 0..2^40, for which memory is taken at once; it grows for more; default 0
     state_stride: begin_step keeps the state of every n-th row of an episode, 1..2^30, default 8
-    error_size: bytes of error, terminator included; what is longer is cut
-    error: [error_size] the text of a failing call that takes this config; NULL
+    error_size: bytes of error, terminator included; a longer text is cut
+    error: [error_size] receives the text when a call that takes this config fails; NULL: not wanted
     host: hooks of this handle, copied; NULL: those of rdm_init
-    num_points: of the cloud beside each row, 0..65536; 0: none are kept; default 0
+    num_points: points of the cloud beside each row, 0..65536; 0: no clouds are kept; default 0
     point_color: whether its points have colours: 0, 1; default 0
     """
 
@@ -2796,13 +2805,13 @@ class RecordingInfo(Record):
     action_dim: count
     cost_dim: count
     rows: count
-    episodes: count, those that have not ended too
+    episodes: count, including those that have not ended
     num_states: count
     state_bytes: of each
     layout_hash: 0: unknown
-    fingerprint: of obs and label of all rows; what an agent that uses them is resumed by
+    fingerprint: of obs and label of all rows; checked when an agent that uses them is resumed
     task: "" for a host's own environment
-    num_points: of each row's cloud; 0: it has none
+    num_points: points of each row's cloud; 0: there are no clouds
     """
 
     obs_dim: int
@@ -2826,13 +2835,13 @@ class rdm_recording_info(Structure):
     action_dim: count
     cost_dim: count
     rows: count
-    episodes: count, those that have not ended too
+    episodes: count, including those that have not ended
     num_states: count
     state_bytes: of each
     layout_hash: 0: unknown
-    fingerprint: of obs and label of all rows; what an agent that uses them is resumed by
+    fingerprint: of obs and label of all rows; checked when an agent that uses them is resumed
     task: "" for a host's own environment
-    num_points: of each row's cloud; 0: it has none
+    num_points: points of each row's cloud; 0: there are no clouds
     reserved: 0
     """
 
@@ -2867,26 +2876,26 @@ class rdm_recording_info(Structure):
 
 
 class rdm_recording_rows(Structure):
-    """Rows in the order in which they came; those of an episode are in time, those of several may stand
-    in turn.
+    """Rows in the order in which they were added; those of an episode are in order of time, those of
+    several may alternate.
 
     struct_size: in: bytes
     reserved: 0
     rows: count
     obs: [rows][obs_dim] before the action
     action: [rows][action_dim] that was done
-    label: [rows][action_dim] that the teacher meant; to append, NULL: as action
-    reward: [rows] to append, NULL: 0
-    cost: [rows][cost_dim] to append, NULL: 0
-    terminated: [rows] to append, NULL: none
-    truncated: [rows] to append, NULL: none
-    success: [rows] to append, NULL: none
-    episode: [rows] number of its episode from 0; to append, NULL: each end begins one
+    label: [rows][action_dim] that the teacher meant; NULL when appending: as action
+    reward: [rows] NULL when appending: 0
+    cost: [rows][cost_dim] NULL when appending: 0
+    terminated: [rows] NULL when appending: none
+    truncated: [rows] NULL when appending: none
+    success: [rows] NULL when appending: none
+    episode: [rows] number of its episode from 0; NULL when appending: each end begins one
     num_states: count
     state_row: [num_states] row before which the world had the state, ascending
     state: [num_states][state_bytes] what rdm_pool_read_state takes
     points: [rows][num_points][3] mm, world, before the action; NULL without clouds
-    point_class: [rows][num_points] as of rdm_sensors; to append, NULL: 0
+    point_class: [rows][num_points] as in rdm_sensors; NULL when appending: 0
     point_color: [rows][num_points][3] likewise; NULL without colours
     """
 
@@ -2936,14 +2945,14 @@ class rdm_clone_config(Structure):
     struct_size: bytes, set by rdm_clone_config_init
     epochs: passes over the rows, at most, 1..100000, default 30
     batch_rows: of a minibatch, 1..2^20, default 512
-    patience: epochs without a better validation loss that end it, 0: never; default 5
-    learning_rate: Adam's, in the first epoch, 0..10, default 1e-3
-    learning_rate_end: in the last, linear between, 0..10, default 1e-5
-    validation: share of the rows that are not learned from, whole episodes, 0..0.9, default 0.1
-    action_std: deviation of the actor's actions afterwards; 0: as it is; default 0
+    patience: ends after this many epochs without a better validation loss, 0: never; default 5
+    learning_rate: of Adam, in the first epoch, 0..10, default 1e-3
+    learning_rate_end: in the last epoch, linear in between, 0..10, default 1e-5
+    validation: share of the rows held back for validation, in whole episodes, 0..0.9, default 0.1
+    action_std: standard deviation of the actor's actions afterwards; 0: unchanged; default 0
     seed: of shuffling and of the choice for validation, default 0
-    feed_normalizer: flag: the statistics of observations become the recording's first, default 1
-    capacity: entries of the two below
+    feed_normalizer: flag: the statistics of observations are first set to the recording's, default 1
+    capacity: entries of the two arrays below
     train_loss: [capacity] of each epoch, mean squared error of an entry; NULL: not wanted
     validation_loss: [capacity] likewise, after it
     """
@@ -2981,8 +2990,8 @@ class rdm_clone_config(Structure):
 class CloneReport(Record):
     """what Agent.clone did
 
-    epochs: that were run
-    best_epoch: from 1: whose weights were kept; without validation the last one's
+    epochs: epochs that were run
+    best_epoch: from 1: the epoch whose weights were kept; without validation the last one
     stopped: flag: it ended early
     train_rows: count
     validation_rows: count
@@ -3003,8 +3012,8 @@ class rdm_clone_report(Structure):
     """what rdm_agent_clone did
 
     struct_size: in: bytes
-    epochs: that were run
-    best_epoch: from 1: whose weights were kept; without validation the last one's
+    epochs: epochs that were run
+    best_epoch: from 1: the epoch whose weights were kept; without validation the last one
     stopped: flag: it ended early
     train_rows: count
     validation_rows: count
@@ -3033,19 +3042,19 @@ class rdm_clone_report(Structure):
 
 
 class rdm_ranks(Structure):
-    """who learns together, and how messages go from one to the other
+    """which processes learn together, and how they exchange messages
 
     struct_size: bytes
     rank: of this process, 0..ranks - 1; its world 0 is number rank * num_envs of all
     ranks: processes, 1..4096
     reserved: 0
     user: passed back to the hooks; may be NULL
-    gather: An allgather: `mine`, `bytes` of them, stands at `all` + r * bytes for each rank r afterwards, on
-        all ranks; bytes is the same on each. Blocks until all have come. Any number but 0 is a failure. NULL
-        only for one rank.
-    swap: Sends mine to rank `partner`, which sends as much here: `theirs`. Takes the place of gather in sums of
-        gradients where ranks is a power of two: each receives 2 of them in 2 log2(ranks) messages, not ranks -
-        1. NULL on all ranks, or on none.
+    gather: An allgather: afterwards, `all` + r * bytes holds the `mine` of rank r, `bytes` long, on all ranks;
+        bytes is the same on each. Blocks until all ranks have called it. Returns 0, or any other number for a
+        failure. NULL only for a single rank.
+    swap: Sends `mine` to rank `partner` and receives that rank's message of the same size in `theirs`. Used
+        instead of gather to sum gradients where ranks is a power of two: each rank then receives the data of 2
+        gradients in 2 log2(ranks) messages, instead of ranks - 1. NULL on all ranks, or on none.
     """
 
     struct_size: int
@@ -3078,12 +3087,12 @@ class rdm_robot_link(Structure):
     lower: range, below upper
     upper: range
     velocity: how fast the drive's target may move; 0: at once
-    kp: drive: effort kp (target - q) - kd rate
-    kd: drive
-    effort: bound of the drive's effort, N m (N)
+    kp: stiffness of the drive, whose effort is kp (target - q) - kd qd
+    kd: damping of the drive
+    effort: largest effort of the drive, N m (N)
     armature: inertia added about the axis, kg m2; revolute joints alone
     friction: dry friction, N m (N)
-    mass: 0 with moments of 0: none
+    mass: 0 with moments of 0: massless
     com: centre of mass in the link's frame
     moment: xx yy zz xy xz yz about com, axes of the link
     """
@@ -3127,7 +3136,8 @@ class rdm_robot_link(Structure):
 
 
 class rdm_robot_shape(Structure):
-    """frozen layout: what of a link can be touched and seen
+    """frozen layout: a shape of a link, which can be touched and
+    seen
 
     name: unique
     link: row, RDM_LINK_ROOT
@@ -3183,12 +3193,12 @@ class rdm_robot_pair(Structure):
 
 
 class RobotCoupling(Record):
-    """frozen layout: a joint that a tendon or belt lets follow another
+    """frozen layout: a joint that follows another one, by a tendon or belt
 
     link: row whose joint follows
-    other: row whose joint leads; itself no follower
+    other: row whose joint it follows, which itself follows none
     ratio: q = ratio q_other
-    slack: rad: within it the joint goes freely
+    slack: rad; within it the joint moves freely
     """
 
     link: int
@@ -3198,12 +3208,12 @@ class RobotCoupling(Record):
 
 
 class rdm_robot_coupling(Structure):
-    """frozen layout: a joint that a tendon or belt lets follow another
+    """frozen layout: a joint that follows another one, by a tendon or belt
 
     link: row whose joint follows
-    other: row whose joint leads; itself no follower
+    other: row whose joint it follows, which itself follows none
     ratio: q = ratio q_other
-    slack: rad: within it the joint goes freely
+    slack: rad; within it the joint moves freely
     """
 
     link: int
@@ -3219,10 +3229,10 @@ class rdm_robot_coupling(Structure):
 
 
 class RobotCurve(Record):
-    """frozen layout: the target of a joint, piecewise linear in a command of -1 to 1
+    """frozen layout: the target of a joint, a piecewise linear function of a command of -1 to 1
 
     link: row
-    driver: row whose command it is: the same, or that of the motor
+    driver: row whose command it is a function of: the same row, or that of the motor
     num_knots: 2 to RDM_MAX_KNOTS
     command: ascending
     angle: in the joint's range, rad (m)
@@ -3236,10 +3246,10 @@ class RobotCurve(Record):
 
 
 class rdm_robot_curve(Structure):
-    """frozen layout: the target of a joint, piecewise linear in a command of -1 to 1
+    """frozen layout: the target of a joint, a piecewise linear function of a command of -1 to 1
 
     link: row
-    driver: row whose command it is: the same, or that of the motor
+    driver: row whose command it is a function of: the same row, or that of the motor
     num_knots: 2 to RDM_MAX_KNOTS
     reserved: 0
     command: ascending
@@ -3263,11 +3273,11 @@ class rdm_robot_curve(Structure):
 
 
 class RobotFinger(Record):
-    """frozen layout: its rows stand together, from `first` to `tip`
+    """frozen layout: a finger, whose links are the rows from `first` to `tip`
 
-    name: short: it begins the names of its observations
+    name: short; the names of its observations begin with it
     first: row of its first link
-    tip: row of its last; it carries the force sensor
+    tip: row of its last link, which carries the force sensor
     lateral: row of the joint that spreads it to a side, -1: none
     proximal: row of the joint that bends it at its base, -1: none
     middle: row of the next joint that bends it, -1: none
@@ -3286,11 +3296,11 @@ class RobotFinger(Record):
 
 
 class rdm_robot_finger(Structure):
-    """frozen layout: its rows stand together, from `first` to `tip`
+    """frozen layout: a finger, whose links are the rows from `first` to `tip`
 
-    name: short: it begins the names of its observations
+    name: short; the names of its observations begin with it
     first: row of its first link
-    tip: row of its last; it carries the force sensor
+    tip: row of its last link, which carries the force sensor
     lateral: row of the joint that spreads it to a side, -1: none
     proximal: row of the joint that bends it at its base, -1: none
     middle: row of the next joint that bends it, -1: none
@@ -3324,7 +3334,7 @@ class rdm_robot_def(Structure):
     struct_size: bytes, set by rdm_robot_def_init
     kind: RDM_ROBOT_*
     name: letters, digits, '_', '-', '+'; at most 25
-    alias: another name; NULL
+    alias: another name; NULL: none
     summary: one line; NULL: none
     links: [num_links] a parent before its children
     shapes: [num_shapes] NULL with num_shapes 0
@@ -3334,26 +3344,26 @@ class rdm_robot_def(Structure):
     commands: [num_commands] rows in the order of actions; NULL: all but the followers, by row
     fingers: [num_fingers] the first finger first; NULL with num_fingers 0
     home: [num_links] start pose, rad (m); NULL: 0, or the limit nearest to it
-    folded: [num_links] of a hand: fingers straight, thumb across the palm; NULL
-    closed: [num_commands] of a hand: commands that close it around 5 cm; NULL
+    folded: [num_links] of a hand: fingers straight, thumb across the palm; NULL: none
+    closed: [num_commands] of a hand: commands that close it around 5 cm; NULL: none
     num_links: 1 to RDM_MAX_LINKS
     num_shapes: count
     num_pairs: count
     num_couplings: count
     num_curves: count
-    num_commands: count; -1: none, springs hold joints at home (of RDM_ROBOT_OTHER: a door, scissors)
+    num_commands: count; -1: none, springs hold the joints at home (RDM_ROBOT_OTHER, such as a door or scissors)
     num_fingers: count
-    mirror: root axis (0, 1, 2) normal to the plane that a left one is mirrored in; -1: none
+    mirror: root axis (0, 1, 2) normal to the plane that mirrors it into a left one; -1: none
     root_mass: of the root link, kg
     root_com: in the root frame, m
     root_moment: as rdm_robot_link.moment
-    mount: of hands: the frame, z to the fingers, that comes onto an arm's flange; in the root frame
+    mount: of hands: the frame, z towards the fingers, that is fixed to an arm's flange; in the root frame
     flange: of arms: the frame, z out of the arm, that carries a hand; in flange_link's frame
     flange_link: row, RDM_LINK_NONE
     palm_link: row, RDM_LINK_ROOT, RDM_LINK_NONE
     palm_p: centre of the palm's surface, in palm_link's frame, m
     palm_normal: unit: out of the palm
-    palm_fingers: unit: the way the fingers point; of a gripper any in the palm's plane
+    palm_fingers: unit: where the fingers point; of a gripper any direction in the palm's plane
     hold_p: where a held object is, in palm_link's frame, m
     """
 
@@ -3430,17 +3440,17 @@ class rdm_robot_def(Structure):
 
 
 class rdm_shape_def(Structure):
-    """frozen layout: a shape of a body or an object, or one that stands still
+    """frozen layout: a shape of a body or an object, or a fixed one
 
-    name: unique in the scene; NULL: that of the body. Of an object unused
-    material: of rdm_scene_add_material; NULL: "default". Of an object unused
+    name: unique in the scene; NULL: that of the body. Unused in an object
+    material: of rdm_scene_add_material; NULL: "default". Unused in an object
     points: [num_points][3] of an RDM_SHAPE_HULL: 4 to 32 points, m; else NULL
     num_points: count
-    kind: RDM_SHAPE_SPHERE ... RDM_SHAPE_HULL; an RDM_SHAPE_PLANE stands still
-    size: as rdm_shape_info, m; of a hull unused
+    kind: RDM_SHAPE_SPHERE ... RDM_SHAPE_HULL; an RDM_SHAPE_PLANE is fixed
+    size: as rdm_shape_info, m; unused in a hull
     pose: in the frame of the body, or in the world
     color: red, green, blue, 255; all 0: grey
-    seen_only: flag: nothing touches it
+    seen_only: flag: it is only seen, nothing touches it
     """
 
     name: bytes | None
@@ -3471,13 +3481,14 @@ class rdm_object_def(Structure):
     struct_size: bytes, set by rdm_object_def_init
     num_shapes: 1 to RDM_MAX_SHAPES
     name: letters, digits, '_', '-', '+'; at most 25
-    alias: another name; NULL
+    alias: another name; NULL: none
     summary: one line; NULL: none
-    material: what its surface is: a name for scenes; NULL: "object"
-    shapes: [num_shapes] in any one frame: a body's is at its centre of mass, axes stay
+    material: name of its surface's material in scenes; NULL: "object"
+    shapes: [num_shapes] in one frame of your choice; that of a body has its origin at the centre of mass and
+        the same axes
     mass: kg, 1e-6 to 1000
-    moment: xx yy zz xy xz yz, kg m2, the frame's origin then is the centre of mass; all 0: of the shapes,
-        solid, of one density; where two overlap, both count
+    moment: xx yy zz xy xz yz, kg m2; the frame's origin is the centre of mass then. All 0: of the shapes as
+        solids of one density; where two overlap, both count
     friction: friction coefficient, on dry surfaces, 0 to 10; default 0.5
     """
 
@@ -3548,19 +3559,19 @@ class rdm_body_def(Structure):
 
 
 class rdm_scene_robot(Structure):
-    """a robot in a scene: one of the list, or a tree of its own (a drawer, a door)
+    """a robot in a scene: a registered one, or one of this scene alone (a drawer, a door)
 
     struct_size: bytes, set by rdm_scene_robot_init
-    robot: of rdm_robot_find; default -1: left out
-    own: a robot of this scene alone, in the place of `robot`; NULL
+    robot: number from rdm_robot_find; default -1: not given
+    own: a robot of this scene alone, instead of `robot`; NULL: none
     name: begins, with '_', the names of its links, joints and shapes; unique
     material: of its shapes; NULL: "default"
     pose: of its base at the start
-    base_damping: of a free base: of all links, 1/s
+    base_damping: damping of all links, 1/s; with a free base alone
     free_base: flag: the base moves
     left: flag: the mirror image
     gravity: flag: its links feel gravity
-    filled: flag, set by rdm_scene_robot_init: without it a robot of 0 was left out
+    filled: flag, set by rdm_scene_robot_init; without it robot 0 counts as not given
     """
 
     struct_size: int
@@ -3590,18 +3601,20 @@ class rdm_scene_robot(Structure):
 
 
 class ContactLaw(Record):
-    """how two materials meet beside their friction
+    """contacts of two materials, apart from their friction
 
-    pyramid: flag, of soft contacts: friction by edges, as MuJoCo has it by default: the softer the more it
-        rubs, and sliding lifts
-    restitution: 0 to 1: share of the speed at which a hard contact closed, above 0.05 m/s, that it parts with
+    pyramid: flag, for soft contacts: pyramidal friction, MuJoCo's default, in which contacts are softer the
+        more friction they have, and sliding lifts a body
+    restitution: 0 to 1: share of its closing speed with which a hard contact opens, where that is above 0.05
+        m/s
     torsional: m, 0 to 10: rotation about the normal is opposed by at most this times the normal force
     rolling: m, 0 to 10: rolling likewise
-    time_constant: s, to 10: a spring and damper, as MuJoCo's solref; 0: hard. At least two substeps count
-    damping_ratio: of it, 0.01 to 100; default 1
-    impedance_min: 1e-4 to 0.9999, of a touch, as MuJoCo's solimp; default 0.9
+    time_constant: s, up to 10: soft contacts by a spring and damper, as in MuJoCo's solref, of two substeps at
+        least; 0: hard contacts
+    damping_ratio: of that spring, 0.01 to 100; default 1
+    impedance_min: 1e-4 to 0.9999, at first touch, as in MuJoCo's solimp; default 0.9
     impedance_max: likewise, deeper than the width; default 0.95
-    impedance_width: m, to 10; default 0.001
+    impedance_width: m, up to 10; default 0.001
     """
 
     pyramid: int
@@ -3616,19 +3629,21 @@ class ContactLaw(Record):
 
 
 class rdm_contact_law(Structure):
-    """how two materials meet beside their friction
+    """contacts of two materials, apart from their friction
 
     struct_size: bytes, set by rdm_contact_law_init
-    pyramid: flag, of soft contacts: friction by edges, as MuJoCo has it by default: the softer the more it
-        rubs, and sliding lifts
-    restitution: 0 to 1: share of the speed at which a hard contact closed, above 0.05 m/s, that it parts with
+    pyramid: flag, for soft contacts: pyramidal friction, MuJoCo's default, in which contacts are softer the
+        more friction they have, and sliding lifts a body
+    restitution: 0 to 1: share of its closing speed with which a hard contact opens, where that is above 0.05
+        m/s
     torsional: m, 0 to 10: rotation about the normal is opposed by at most this times the normal force
     rolling: m, 0 to 10: rolling likewise
-    time_constant: s, to 10: a spring and damper, as MuJoCo's solref; 0: hard. At least two substeps count
-    damping_ratio: of it, 0.01 to 100; default 1
-    impedance_min: 1e-4 to 0.9999, of a touch, as MuJoCo's solimp; default 0.9
+    time_constant: s, up to 10: soft contacts by a spring and damper, as in MuJoCo's solref, of two substeps at
+        least; 0: hard contacts
+    damping_ratio: of that spring, 0.01 to 100; default 1
+    impedance_min: 1e-4 to 0.9999, at first touch, as in MuJoCo's solimp; default 0.9
     impedance_max: likewise, deeper than the width; default 0.95
-    impedance_width: m, to 10; default 0.001
+    impedance_width: m, up to 10; default 0.001
     """
 
     struct_size: int
@@ -3656,14 +3671,14 @@ class rdm_contact_law(Structure):
 
 
 class rdm_joints(Structure):
-    """the joints of all robots of a world; the addresses hold within the call
+    """the joints of all robots of a world; the addresses are valid during the call
 
     struct_size: in: bytes
     count: of joints
     control_dt: s of a control step
     q: [count] rad (m)
     qd: [count] rad/s (m/s)
-    target: [count] what the drives go for
+    target: [count] targets of the drives, rad (m)
     torque: [count] of the drives, mean over the step, N m (N)
     """
 
@@ -3704,7 +3719,7 @@ class rdm_motion(Structure):
 
 
 class Factor(Record):
-    """frozen layout: on a constant of the scene, in one world
+    """frozen layout: scales a constant of the scene in one world
 
     what: Scale
     index: of the link, robot or body, or the first material
@@ -3719,7 +3734,7 @@ class Factor(Record):
 
 
 class rdm_factor(Structure):
-    """frozen layout: on a constant of the scene, in one world
+    """frozen layout: scales a constant of the scene in one world
 
     what: RDM_SCALE_*
     index: of the link, robot or body, or the first material
@@ -3745,10 +3760,10 @@ class rdm_factor(Structure):
 class Random(Record):
     """frozen layout: a stream of random numbers; may be part of a state
 
-    seed: its name
+    seed: with world and purpose: which stream it is
     counter: draws so far
-    world: its name
-    purpose: its name
+    world: likewise
+    purpose: likewise
     """
 
     seed: int
@@ -3760,10 +3775,10 @@ class Random(Record):
 class rdm_random(Structure):
     """frozen layout: a stream of random numbers; may be part of a state
 
-    seed: its name
+    seed: with world and purpose: which stream it is
     counter: draws so far
-    world: its name
-    purpose: its name
+    world: likewise
+    purpose: likewise
     """
 
     seed: int
@@ -3863,9 +3878,9 @@ class FieldDef(Record):
     """frozen layout: a run of observation entries
 
     name: unique, at most 31 characters: "cup.position"
-    unit: of a stored 1: "m", "5 rad/s", "1"
+    unit: what an entry of 1 stands for: "m", "5 rad/s", "1"
     count: entries
-    low: what no entry leaves; low equal to high: none but obs_limit
+    low: lower bound of the entries; low equal to high: no bounds but obs_limit
     high: likewise
     """
 
@@ -3880,9 +3895,9 @@ class rdm_field_def(Structure):
     """frozen layout: a run of observation entries
 
     name: unique, at most 31 characters: "cup.position"
-    unit: of a stored 1: "m", "5 rad/s", "1"
+    unit: what an entry of 1 stands for: "m", "5 rad/s", "1"
     count: entries
-    low: what no entry leaves; low equal to high: none but obs_limit
+    low: lower bound of the entries; low equal to high: no bounds but obs_limit
     high: likewise
     reserved: 0
     """
@@ -3938,10 +3953,11 @@ class OptionDef(Record):
     """frozen layout: one row of an option table, as rdm_option_spec
 
     key: letters, digits, '_', '-', '.'
-    help: one line, with the unit; unused of one that every task has
-    text: default of a text option, or of a number that is a range, else NULL
-    choices: text: allowed words "a|b|c", NULL: any; number, integer: "a..b": takes a range too; else NULL
-    number: default of number, integer, flag; of a range its middle
+    help: one line, with the unit; unused for an option that every task has
+    text: default of a text option, or of a number whose default is a range; else NULL
+    choices: text: the allowed words "a|b|c", NULL: any text; number, integer: "a..b" where a range is allowed
+        too; else NULL
+    number: default of a number, integer or flag; for a range, its middle
     low: inclusive bounds
     high: inclusive bounds
     kind: OptionKind.NUMBER, OptionKind.INTEGER, OptionKind.FLAG, OptionKind.TEXT
@@ -3963,10 +3979,11 @@ class rdm_option_def(Structure):
     """frozen layout: one row of an option table, as rdm_option_spec
 
     key: letters, digits, '_', '-', '.'
-    help: one line, with the unit; unused of one that every task has
-    text: default of a text option, or of a number that is a range, else NULL
-    choices: text: allowed words "a|b|c", NULL: any; number, integer: "a..b": takes a range too; else NULL
-    number: default of number, integer, flag; of a range its middle
+    help: one line, with the unit; unused for an option that every task has
+    text: default of a text option, or of a number whose default is a range; else NULL
+    choices: text: the allowed words "a|b|c", NULL: any text; number, integer: "a..b" where a range is allowed
+        too; else NULL
+    number: default of a number, integer or flag; for a range, its middle
     low: inclusive bounds
     high: inclusive bounds
     kind: RDM_KIND_NUMBER, RDM_KIND_INTEGER, RDM_KIND_FLAG, RDM_KIND_TEXT
@@ -4066,7 +4083,7 @@ class rdm_task_def(Structure):
     fields: [num_fields] of an observation, in order
     costs: [num_costs] column 0 is the one that learners limit
     options: [num_options] rows, and defaults of its own for those that every task has
-    cameras: [num_cameras] NULL with num_cameras 0: "front", made for the origin
+    cameras: [num_cameras] NULL with num_cameras 0: one called "front", which looks at the origin
     defaults: [num_defaults] of agent options; NULL with num_defaults 0
     num_fields: 1 or more
     num_costs: 1 to RDM_MAX_COSTS
@@ -4074,21 +4091,21 @@ class rdm_task_def(Structure):
     num_cameras: count
     num_defaults: count
     action_dim: 1 to 1024
-    hold: [action_dim] the action that holds still; NULL: 0
-    mean: [action_dim] that a new policy starts from; NULL: 0
+    hold: [action_dim] the action that keeps robots still; NULL: 0
+    mean: [action_dim] mean action of a new policy; NULL: 0
     action_order: what the entries are, for the layout hash; NULL: "action"
-    obs_limit: every observation entry is cut at +- this; 0: none
-    state_bytes: of a world's own state, to 2^20
-    instance_bytes: of what build leaves for the others, to 2^24
+    obs_limit: every observation entry is clipped to +- this; 0: no limit
+    state_bytes: size of a world's own state, up to 2^20
+    instance_bytes: size of what build leaves for the other functions, up to 2^24
     user: passed to all; may be NULL
     build: makes the scene, and the constants of this pool. Required
-    reset: starts an episode, the world is as it was built. Required
+    reset: starts an episode; the world is as it was built. Required
     control: before a step: from the clipped action to targets and pushes. Required
     judge: after a step, `step` counts from 1: reward, costs and the end. Required
     observe: writes all entries of the observation, after reset and after judge. Required
-    check_state: FORMAT for a saved state that no world can have: indices out of range, numbers that are not
-        finite. NULL: all are good
-    release: called once, when the task was destroyed and its last pool is gone. NULL: none
+    check_state: returns FORMAT for a saved state that no world can have: indices out of range, numbers that are
+        not finite. NULL: all are accepted
+    release: called once, after the task and its last pool were destroyed. NULL: none
     reset_many: In the place of the functions above, for many worlds at once; NULL: none. Where one is given the
         function of one world may be NULL. A pool calls them on the thread that called it, for up to 256 worlds
         together, between two steps of its engine: a runtime is then entered once a step and not once a world. A
@@ -4356,14 +4373,14 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_last_error": Function(
         c_char_p, {},
         {}, False,
-        """This OS thread's last failure, one line; valid until its next failing rdm call; stale after a
-        success. Runtimes that move calls between threads (Go, asynchronous FFI) read config.error,
-        rdm_pool_error and their like instead.
+        """The text of the last failure on this OS thread, one line. It is valid until the thread's next
+        failing rdm call; a call that succeeds does not clear it. Runtimes that move calls between
+        threads (Go, asynchronous FFI) should read config.error, rdm_pool_error and the like instead.
         """),
     "rdm_version": Function(
         c_uint32, {},
         {}, False,
-        """RDM_VERSION of the library that runs"""),
+        """RDM_VERSION of the library at run time"""),
     "rdm_features": Function(
         c_uint32, {},
         {}, False,
@@ -4375,10 +4392,10 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_check_experimental": Function(
         c_int32, {"version": c_uint32},
         {}, False,
-        """For programs that call experimental functions: VERSION_MISMATCH unless major and minor of
-        `version`, the header's RDM_VERSION, are the library's. With ELF's symbol versions the loader has
-        checked it; a program that finds functions by name at run time, or that runs where symbols have
-        no versions, asks here.
+        """For programs that call experimental functions: VERSION_MISMATCH unless the library has the major
+        and minor version of `version`, the RDM_VERSION of the program's header. On ELF systems the
+        loader has already checked this by symbol versions; programs that look functions up by name at
+        run time, or run where symbols have no versions, should call it.
         """),
     "rdm_build_info": Function(
         c_int32, {"io": POINTER(rdm_build)},
@@ -4387,20 +4404,23 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_init": Function(
         c_int32, {"host": POINTER(rdm_host)},
         {}, False,
-        """Process-wide hooks for handles made later, whose configs give none. Counted; NULL: defaults.
-        Optional.
+        """Sets process-wide hooks for handles that are made later from configs whose host is NULL; host
+        NULL: the defaults. Calls are counted. Optional.
         """),
     "rdm_shutdown": Function(
         None, {},
         {}, False,
-        """the last call puts the default hooks back; handles stay valid"""),
+        """undoes one rdm_init; the last one restores the default hooks;
+        handles stay valid
+        """),
     "rdm_nearest_names": Function(
         c_int32, {"name": c_char_p, "names": c_char_p, "text": c_void_p, "capacity": c_size_t},
         {}, False,
-        """What the texts of NOT_FOUND end with, for names of your own: writes to text [capacity] "; nearest
-        is gamma", "; nearest are a, b and c" of several that are equally near, or "" when nobody can
-        have meant one of `names`, one a line, of which the first 500 count. Case is ignored, '-' equals
-        '_'. Cut at capacity >= 1 bytes; 4 * RDM_TEXT_SIZE hold all.
+        """Writes to text [capacity] the hint that texts of NOT_FOUND end with, for names of your own: ";
+        nearest is gamma", "; nearest are a, b and c" for several that are equally near, or "" when
+        `name` resembles none of `names`, which has one name a line; the first 500 count. Case is ignored
+        and '-' equals '_'. The hint is cut at capacity (>= 1) bytes; 4 * RDM_TEXT_SIZE are always
+        enough.
         """),
     "rdm_policy_read": Function(
         c_int32, {"out": POINTER(c_void_p), "bytes": c_void_p, "size": c_size_t},
@@ -4414,15 +4434,16 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"bytes": c_void_p, "size": c_size_t, "memory": c_void_p},
         {}, False,
         """For programs without a heap: the bytes that rdm_policy_read_in needs for the file bytes [size].
-        Errors as of rdm_policy_read, but for a network that does not give the file's example.
+        Errors are those of rdm_policy_read, except that of a network which does not reproduce the file's
+        example.
         """),
     "rdm_policy_read_in": Function(
         c_int32, {"out": POINTER(c_void_p), "bytes": c_void_p, "size": c_size_t, "memory": c_void_p, "capacity": c_size_t},
         {}, False,
-        """As rdm_policy_read of bytes [size], which may go at once, into memory [capacity] at any address,
-        which the caller keeps until the policy is destroyed. Nothing is taken from heap or hooks, then
-        or by what is done with the policy later; rdm_policy_get_tensor and calls that fail may take from
-        the heap for a moment. RANGE where capacity is less than rdm_policy_read_memory says.
+        """As rdm_policy_read of bytes [size], which are not needed afterwards, into memory [capacity] at
+        any address, which the caller keeps until the policy is destroyed. Neither this call nor later
+        ones on the policy use heap or hooks, except that rdm_policy_get_tensor and calls that fail may
+        use the heap for a moment. RANGE where capacity is less than rdm_policy_read_memory says.
         """),
     "rdm_policy_destroy": Function(
         None, {"p": c_void_p},
@@ -4441,50 +4462,52 @@ FUNCTIONS: dict[str, Function] = {
         """),
     "rdm_policy_act": Function(
         c_int32, {"p": c_void_p, "obs": c_void_p, "rows": c_int32, "noise": c_void_p, "action": c_void_p, "scratch": c_void_p, "scratch_bytes": c_size_t},
-        {"obs": Rows("float32", ("rows", "obs_dim")), "noise": Rows("float32", ("rows", "action_dim")), "action": Rows("float32", ("rows", "action_dim"))}, False,
+        {"obs": Rows("float32", ("rows", "obs_dim")), "action": Rows("float32", ("rows", "action_dim"))}, False,
         """One decision, to be held for rdm_policy_info.action_repeat control steps (rdm_actor_act counts
-        them): action [rows][action_dim] = clip(mean + std noise, -1, 1) for obs [rows][obs_dim].
-        noise [rows][action_dim] are the caller's standard normals, NULL: the mean.
-        scratch [scratch_bytes]: rdm_policy_scratch bytes or more, aligned in any way. No heap, no hidden
-        state: any number of threads, each with its own scratch. ARGUMENT when obs or noise is not
-        finite, or so large that the network overflows (action is written then, and of no use). STATE for
-        a policy that reads points.
+        them): action [rows][action_dim] = clip(mean + std noise, -1, 1) for obs [rows][obs_dim]. noise
+        [rows][action_dim] are standard normal numbers of the caller's; NULL: the mean. scratch
+        [scratch_bytes]: rdm_policy_scratch bytes or more, of any alignment. No heap, no hidden state:
+        any number of threads, each with its own scratch. ARGUMENT when obs or noise is not finite, or so
+        large that the network overflows (action is written then, but meaningless). STATE for a policy
+        that reads points.
         """),
     "rdm_policy_sample": Function(
         c_int32, {"p": c_void_p, "obs": c_void_p, "rows": c_int32, "noise": c_void_p, "action": c_void_p, "mean": c_void_p, "scratch": c_void_p, "scratch_bytes": c_size_t},
         {"obs": Rows("float32", ("rows", "obs_dim")), "noise": Rows("float32", ("rows", "action_dim")), "action": Rows("float32", ("rows", "action_dim")), "mean": Rows("float32", ("rows", "action_dim"))}, False,
-        """The same without the clip, as rdm_agent_act samples, so that what was sampled elsewhere can be
-        learned from: action [rows][action_dim] = mean + std noise, and mean [rows][action_dim], for
-        obs [rows][obs_dim] and noise [rows][action_dim], NULL: none. One of action and mean may be NULL.
-        scratch [scratch_bytes] and errors as of rdm_policy_act.
+        """The same without clipping, as rdm_agent_act samples, so that an agent can learn from decisions
+        that were sampled elsewhere (rdm_agent_put): action [rows][action_dim] = mean + std noise, and
+        mean [rows][action_dim], for obs [rows][obs_dim] and noise [rows][action_dim], NULL: none. One of
+        action and mean may be NULL. scratch [scratch_bytes] and errors as of rdm_policy_act.
         """),
     "rdm_policy_novelty": Function(
         c_int32, {"p": c_void_p, "obs": c_void_p, "rows": c_int32, "novelty": c_void_p},
         {"obs": Rows("float32", ("rows", "obs_dim")), "novelty": Rows("float32", ("rows",))}, False,
-        """How far rows are from those that the policy learned on: novelty [rows] of obs [rows][obs_dim].
+        """How far observations are from those of training: novelty [rows] of obs [rows][obs_dim]. About 1
+        is the most that training saw, and 2 is far from it.
 
           z_j = (x_j - mean_j) / deviation_j, of the m entries x of a row that the policy reads
           novelty = max(sqrt(sum of z_j^2 / m) / a, max of |z_j| / b)
 
-        mean and deviation are the normaliser's, of all rows in training (with options obs_freeze and
-        obs_count_max, of those that it counts), a deviation at least 0.01. One row in a thousand of the
-        last epochs, of 1000 rows or more, had a root mean square above a, one in a thousand a largest
-        above b; of a clone, of its recording. So about 1 is the most that training saw, and 2 is far
-        from it. Not found is what is usual in each entry and unusual together, as a sensor that stands
-        still at a usual value, nor what is unusual of an entry and usual of another one; clouds are not
-        looked at. UNSUPPORTED, and rdm_policy_info.novelty 0, where the file does not tell: of 0.1, of
-        an agent without normalize_obs, or that has not learned from 1000 rows since its statistics
-        were given to it. ARGUMENT when obs is not finite. No heap; any number of threads.
+        mean and deviation are those of the normaliser, over all rows in training (with options
+        obs_freeze and obs_count_max, over those that it counts); a deviation is at least 0.01. Over the
+        last epochs, of 1000 rows or more (after cloning, over the recording), one row in a thousand had
+        a root mean square of z above a, and one in a thousand a largest |z| above b. It does not notice
+        values that are usual one by one and unusual together, such as a sensor that is stuck at a usual
+        value, nor a value that is unusual for its entry but usual for another; it ignores clouds.
+        UNSUPPORTED, and rdm_policy_info.novelty 0, where the file lacks these statistics: a file of 0.1,
+        or of an agent without normalize_obs, or of one that has not learned from 1000 rows since its
+        statistics were given to it. ARGUMENT when obs is not finite. No heap; any number of threads.
         """),
     "rdm_policy_tensor_at": Function(
         c_int32, {"p": c_void_p, "i": c_int32, "out": POINTER(rdm_tensor)},
         {}, False,
-        """"actor.0.weight" of rows outputs and cols inputs, "actor.log_std" or "actor.log_std_bounds",
-        "normalizer.shift|scale|clip", "example.obs|action". RANGE ends the list. All are over whole rows
-        of obs_dim: a weight of an entry that the policy does not read is 0. Of one that reads points
-        "actor.0.weight" has a column for each feature behind those, and there are "encoder.0.weight" and
-        so on, "encoder.origin" and "encoder.range", in m, "encoder.activation" (0 tanh, 1 elu, 2 relu),
-        "example.points", in m, and "example.point_class".
+        """Tensor i of the policy: "actor.0.weight" (rows outputs, cols inputs) and so on, "actor.log_std"
+        or "actor.log_std_bounds", "normalizer.shift|scale|clip", "example.obs|action". RANGE ends the
+        list. Inputs are whole rows of obs_dim; weights of entries that the policy does not read are 0.
+        In a policy that reads points, "actor.0.weight" has further columns for the features, and there
+        are "encoder.0.weight" and so on, "encoder.origin" and "encoder.range", in m,
+        "encoder.activation" (0 tanh, 1 elu, 2 relu), "example.points", in m, and
+        "example.point_class".
         """),
     "rdm_policy_get_tensor": Function(
         c_int32, {"p": c_void_p, "name": c_char_p, "out": c_void_p, "count": c_size_t},
@@ -4493,13 +4516,15 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_policy_field_at": Function(
         c_int32, {"p": c_void_p, "i": c_int32, "io": POINTER(rdm_field_info)},
         {}, False,
-        """Part i of a row, whose names are the policy's; bounds are unknown. RANGE ends the list."""),
+        """Field i of an observation; its strings live as long as the policy, its bounds are unknown. RANGE
+        ends the list.
+        """),
     "rdm_policy_check": Function(
         c_int32, {"p": c_void_p, "spec": POINTER(rdm_spec)},
         {}, False,
-        """OK, or VERSION_MISMATCH with a text that says which field of the spec differs; where rows are of
-        another layout, the first part that differs, if the policy says its parts and a pool of the
-        spec's layout lives.
+        """Whether the policy fits a pool of this spec: OK, or VERSION_MISMATCH with a text that says which
+        member of the spec differs. Where the layout differs, the text names the first field that does,
+        if the policy file lists its fields and a pool of the spec's layout exists.
         """),
     "rdm_policy_get_columns": Function(
         c_int32, {"p": c_void_p, "columns": c_void_p, "capacity": c_size_t, "count": c_void_p},
@@ -4510,8 +4535,8 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_task_count": Function(
         c_int32, {},
         {}, False,
-        """one more than the highest number of a task; 0 without the
-        simulation half
+        """one more than the highest number of a task; 0 in a build
+        without simulation
         """),
     "rdm_task_at": Function(
         c_int32, {"index": c_int32, "io": POINTER(rdm_task)},
@@ -4522,7 +4547,7 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_task_find": Function(
         c_int32, {"name": c_char_p, "index": c_void_p},
         {}, False,
-        """NOT_FOUND: nearest in the text"""),
+        """NOT_FOUND: the text offers the nearest"""),
     "rdm_task_field_at": Function(
         c_int32, {"task": c_int32, "i": c_int32, "io": POINTER(rdm_field_info)},
         {}, False,
@@ -4555,7 +4580,8 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"name": c_char_p, "index": c_void_p},
         {}, False,
         """name or alias; NOT_FOUND:
-        nearest in the text
+        the text offers the
+        nearest
         """),
     "rdm_robot_joint_at": Function(
         c_int32, {"robot": c_int32, "i": c_int32, "io": POINTER(rdm_joint_info)},
@@ -4572,9 +4598,9 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_object_find": Function(
         c_int32, {"name": c_char_p, "index": c_void_p},
         {}, False,
-        """name or alias;
-        NOT_FOUND: nearest in
-        the text
+        """name or alias; NOT_FOUND:
+        the text offers the
+        nearest
         """),
     "rdm_pool_config_init": Function(
         c_int32, {"c": POINTER(rdm_pool_config), "size": c_size_t},
@@ -4585,32 +4611,32 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_pool_config_spec": Function(
         c_int32, {"c": POINTER(rdm_pool_config), "io": POINTER(rdm_spec)},
         {}, False,
-        """What a pool of this config would be: OK where rdm_pool_create would be, memory aside, else its
-        error. Makes the task to ask it, and no world; nothing is kept.
+        """The sizes that a pool of this config would have. Returns what rdm_pool_create would return,
+        memory aside. Makes the task for a moment and no world; nothing is kept.
         """),
     "rdm_pool_config_memory": Function(
         c_int32, {"c": POINTER(rdm_pool_config), "ours": c_void_p, "engines": c_void_p},
         {}, False,
-        """Bytes that creation takes: `ours` in one block, exact; `engines` by the physics engine from the C
-        library, an estimate. Either may be NULL. No hook is called. The task must be made to know them:
-        that is done in memory of the C library, which has it back at the end.
+        """Bytes that creation takes: *ours in one block, exact; *engines by the physics engine from the C
+        library, an estimate. Either may be NULL. No hook is called: the task is made to find out, in
+        memory of the C library that is freed at the end.
         """),
     "rdm_pool_create": Function(
         c_int32, {"out": POINTER(c_void_p), "c": POINTER(rdm_pool_config)},
         {}, False,
         """Makes the worlds. They are not reset yet: call rdm_pool_reset before the first step. A host's
         alloc hook is called once, for one block that holds all of the pool; to know its size the task is
-        made once before, as by rdm_pool_config_memory. Without the hook, the C library gives each
-        part.
+        made once before, as by rdm_pool_config_memory. Without the hook, each part comes from the C
+        library.
         """),
     "rdm_pool_create_in": Function(
         c_int32, {"out": POINTER(c_void_p), "c": POINTER(rdm_pool_config), "memory": c_void_p, "bytes": c_size_t},
         {}, False,
-        """The same in memory [bytes] at any address, which is the pool's until it is destroyed, and the
-        caller's all the time: at least `ours` of rdm_pool_config_memory. Fewer are RANGE, and the text
-        says how many are needed. Neither alloc hook nor C library are asked for memory, then and later,
-        but by the physics engine, and by the system for threads; what rdm_pool_set_starts keeps must
-        fit into what is left (MEMORY).
+        """The same in memory [bytes] at any address: at least *ours of rdm_pool_config_memory, else RANGE,
+        and the text says how many are needed. The pool uses the memory until it is destroyed; the caller
+        owns it throughout. Neither alloc hook nor C library are asked for memory, now or later, except
+        by the physics engine and, for threads, by the system; what rdm_pool_set_starts keeps must fit
+        into what is left (MEMORY).
         """),
     "rdm_pool_destroy": Function(
         None, {"p": c_void_p},
@@ -4625,7 +4651,7 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_pool_get_spec": Function(
         c_int32, {"p": c_void_p, "io": POINTER(rdm_spec)},
         {}, False,
-        """as rdm_pool_config_spec, of a pool"""),
+        """as rdm_pool_config_spec, for a pool"""),
     "rdm_pool_field_at": Function(
         c_int32, {"p": c_void_p, "i": c_int32, "io": POINTER(rdm_field_info)},
         {}, False,
@@ -4633,21 +4659,21 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_pool_get_initial_mean": Function(
         c_int32, {"p": c_void_p, "action": c_void_p},
         {"action": Rows("float32", ("action_dim",))}, False,
-        """Mean action [action_dim] that a new policy starts from: the task's start pose, seldom that of
-        RDM_BASELINE_HOLD.
+        """The mean action [action_dim] that a new policy starts from: the task's start pose, which usually
+        differs from the action of RDM_BASELINE_HOLD.
         """),
     "rdm_pool_setting_at": Function(
         c_int32, {"p": c_void_p, "i": c_int32, "key": POINTER(c_char_p), "text": c_void_p},
         {}, False,
-        """What option i of the task is in this pool: key and the value as text [RDM_TEXT_SIZE], which reads
-        back exactly. RANGE for a text that is longer: rdm_pool_get_settings has it. Behind the task's
-        num_options come keys with a FIELD that were set, in order; RANGE ends them.
+        """The value of option i of the task in this pool: its key, and the value as text [RDM_TEXT_SIZE],
+        which reads back exactly. RANGE for a longer text: rdm_pool_get_settings has it. After the task's
+        num_options follow the keys with a FIELD that were set, in order, then RANGE.
         """),
     "rdm_pool_get_settings": Function(
         c_int32, {"p": c_void_p, "text": c_void_p, "capacity": c_size_t, "size": c_void_p},
         {}, False,
-        """All options as text [capacity] of lines key=value, but with option level those that it draws:
-        given as settings they make the same pool again.
+        """All options as text [capacity] of lines key=value, except those that option level draws; given as
+        settings they make the same pool again.
         """),
     "rdm_pool_get_buffers": Function(
         c_int32, {"p": c_void_p, "io": POINTER(rdm_buffers)},
@@ -4656,31 +4682,32 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_pool_set_buffers": Function(
         c_int32, {"p": c_void_p, "b": POINTER(rdm_buffers)},
         {}, False,
-        """Non-NULL pointers of b take the place of the pool's (sizes as above, at least 4-byte aligned;
-        they must outlive the pool or the next bind); NULL ones keep what is there. Contents are copied
-        over.
+        """Replaces the pool's arrays by those of b that are not NULL (sizes as above, at least 4-byte
+        aligned); they must live until the pool is destroyed or they are replaced again. Present contents
+        are copied into them.
         """),
     "rdm_pool_reset": Function(
         c_int32, {"p": c_void_p, "seeds": c_void_p, "mask": c_void_p},
         {"seeds": Rows("uint64", ("num_envs",)), "mask": Rows("uint8", ("num_envs",))}, False,
-        """Starts new episodes where mask [num_envs] is not 0 (NULL: everywhere). seeds [num_envs] name new
-        streams: the seed alone, whatever the world's number, so that seed s gives what a pool of one
-        world created with seed s has. NULL: continue the worlds' own, which after create is
-        (config.seed, i). Costs are 0 afterwards. An entry of the first observation that is not finite is
-        written as 0, and the world is flagged RDM_STATUS_DIVERGED, its episode with it. Where a host's
-        own task fails: its error, for the lowest such world; these are flagged RDM_STATUS_TASK and stand
-        as if they were never reset, the others have begun.
+        """Starts new episodes where mask [num_envs] is not 0 (NULL: everywhere). seeds [num_envs] give
+        these worlds new random streams, which depend on the seed alone and not on the world's number:
+        seed s gives the episode of a pool of one world created with seed s. seeds NULL: the worlds
+        continue their own streams, which after create are (config.seed, i). Costs are 0 afterwards. An
+        entry of the first observation that is not finite is written as 0, and the world and its episode
+        are flagged RDM_STATUS_DIVERGED. Where a host's own task fails, the error of the lowest such
+        world is returned; all such worlds are flagged RDM_STATUS_TASK and count as never reset, the
+        others have begun.
         """),
     "rdm_pool_step": Function(
         c_int32, {"p": c_void_p},
         {}, False,
-        """One control step of every world: reads action, writes all the rest. STATE before the first reset,
-        and with autoreset off while an ended world was not reset. Worlds that diverge, get an action
-        that is not finite, or whose task of a host's own fails, are truncated and flagged, with reward
-        and cost 0 in that step; the call returns OK. With option action_repeat it is that many control
-        steps with the same action, or as many as the episode has left: reward and cost are sums over
-        them, success is set if any had it, status has the bits of all, the other rows are those after
-        the last.
+        """One control step of every world: reads action, writes all other rows. STATE before the first
+        reset, and with autoreset off while a world that ended was not reset. A world that diverges, gets
+        an action that is not finite, or whose task of a host's own fails, is truncated and flagged, with
+        reward and cost 0 in that step; the call still returns OK. With option action_repeat it makes
+        that many control steps with the same action, or as many as the episode has left: reward and cost
+        are sums over them, success is 1 if it was in any, status has the bits of all, the other rows are
+        those after the last.
         """),
     "rdm_pool_step_masked": Function(
         c_int32, {"p": c_void_p, "mask": c_void_p},
@@ -4706,7 +4733,7 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_pool_get_hash": Function(
         c_int32, {"p": c_void_p, "env": c_int32, "hash": c_void_p},
         {}, False,
-        """of the state; -1: all"""),
+        """of the state of world env; -1: of all"""),
     "rdm_pool_shape_at": Function(
         c_int32, {"p": c_void_p, "i": c_int32, "io": POINTER(rdm_shape_info)},
         {}, False,
@@ -4714,19 +4741,19 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_pool_get_poses": Function(
         c_int32, {"p": c_void_p, "env": c_int32, "poses": c_void_p},
         {"poses": Rows("float64", ("num_shapes", "7"))}, False,
-        """To poses [num_shapes] those of the shapes, in the world's frame."""),
+        """Writes the poses of the shapes of world env to poses [num_shapes], in that world's frame."""),
     "rdm_pool_get_contacts": Function(
         c_int32, {"p": c_void_p, "env": c_int32, "out": POINTER(rdm_contact), "capacity": c_size_t, "count": c_void_p},
         {}, False,
-        """Writes up to capacity contacts to out [capacity], of sleeping bodies as they were when they fell
-        asleep; *count is how many there are.
+        """Writes up to capacity contacts to out [capacity]; *count is how many there are. Contacts of
+        sleeping bodies are those of the moment when they fell asleep.
         """),
     "rdm_pool_render": Function(
         c_int32, {"p": c_void_p, "env": c_int32, "camera": c_char_p, "w": c_int32, "h": c_int32, "rgb": c_void_p, "depth": c_void_p, "segmentation": c_void_p},
         {"rgb": Rows("uint8", ("h", "w", "3")), "depth": Rows("float32", ("h", "w")), "segmentation": Rows("int32", ("h", "w"))}, False,
-        """A picture of world env. camera: a name of the task's. rgb [h][w][3], depth [h][w] (m along the
-        optical axis, 0: nothing hit), segmentation [h][w] (shape, -1: nothing); each may be NULL. 1 <=
-        w, h <= 8192.
+        """A picture of world env by the task's camera of that name. rgb [h][w][3], depth [h][w] (m along
+        the optical axis, 0: nothing hit), segmentation [h][w] (shape, -1: nothing); each may be NULL. 1
+        <= w, h <= 8192.
         """),
     "rdm_pool_get_stats": Function(
         c_int32, {"p": c_void_p, "io": POINTER(rdm_pool_stats)},
@@ -4735,11 +4762,11 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_pool_copy": Function(
         c_int32, {"dst": c_void_p, "dst_env": c_int32, "src": c_void_p, "src_env": c_int32},
         {}, False,
-        """World dst_env of dst (-1: all of them) becomes what world src_env of src is, at the price of
-        copying memory: afterwards it continues with the bytes that read_state(write_state) would give,
-        and its rows (but action, and those of rdm_sensors) are the other's. Pools of the same task and
-        options, of any sizes, threads and seeds; src may be dst. ARGUMENT for pools that differ, RANGE
-        for worlds that are not there: nothing changes. No heap.
+        """Makes world dst_env of dst (-1: every world) a copy of world src_env of src, at the price of
+        copying memory: it continues with the same bytes as after write_state and read_state, and its
+        rows are copied too, except action and those of rdm_sensors. Both pools must have the same task
+        and options; sizes, threads and seeds may differ, and src may be dst. ARGUMENT for pools that
+        differ, RANGE for worlds that do not exist; nothing changes then. No heap.
         """),
     "rdm_pool_joint_at": Function(
         c_int32, {"p": c_void_p, "i": c_int32, "io": POINTER(rdm_joint_info)},
@@ -4748,43 +4775,46 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_pool_get_joints": Function(
         c_int32, {"p": c_void_p, "env": c_int32, "q": c_void_p, "qd": c_void_p, "count": c_size_t},
         {"q": Rows("float64", ("count",)), "qd": Rows("float64", ("count",))}, False,
-        """Where the joints of world env are and how fast, q [count] and qd [count] (rad, rad/s; m, m/s) in
+        """Positions q [count] and velocities qd [count] of the joints of world env (rad, rad/s; m, m/s), in
         the order of rdm_pool_joint_at; count: num_joints. Either array may be NULL.
         """),
     "rdm_pool_set_joints": Function(
         c_int32, {"p": c_void_p, "env": c_int32, "q": c_void_p, "qd": c_void_p, "count": c_size_t},
         {"q": Rows("float64", ("count",)), "qd": Rows("float64", ("count",))}, False,
-        """Puts them there: q [count], and with it what their drives go for, and qd [count]; what is NULL
-        stays. RANGE names the joint that is beyond its range by more than its ends give way (option
-        limit_margin; 10 where ends are soft), or as fast as 1e6; ARGUMENT one that is not finite. STATE
-        where no episode runs. Nothing changes then. A coupled joint is moved by its drive alone: it may
-        be off, and is drawn back. NaN of one is where, or as fast as, the other joint leads it. Bases,
-        bodies and what the task remembers of commands stay. Numbers are rounded to float where the
-        engine keeps floats. As read_state it rewrites obs and clears the other rows. Where a host's own
-        task fails to observe: its error; the joints are set, and obs is as it was.
+        """Sets positions q [count], and the targets of the drives with them, and velocities qd [count];
+        what is NULL stays. RANGE names a joint that is further beyond its range than its ends yield
+        (option limit_margin; 10 where ends are soft), or as fast as 1e6; ARGUMENT one that is not
+        finite. STATE where no episode runs. Nothing changes then. A coupled joint may be set off its
+        coupling; its drive pulls it back. NaN for one means the position, or velocity, that follows from
+        the joint that it is coupled to. Bases, bodies and what the task remembers of commands stay.
+        Numbers are rounded to float where the engine keeps floats. Like read_state, it rewrites obs and
+        clears the other rows. Where a host's own task fails to observe, its error is returned; the
+        joints are set then, and obs is as before.
         """),
     "rdm_pool_raycast": Function(
         c_int32, {"p": c_void_p, "env": c_int32, "origin": c_void_p, "direction": c_void_p, "range": c_double, "io": POINTER(rdm_ray_hit)},
         {"origin": Rows("float64", ("3",)), "direction": Rows("float64", ("3",))}, False,
-        """The nearest shape of world env that the ray from origin [3] (m, world axes) along direction [3]
-        (of any length above 0) enters within `range` m, above 0, INFINITY too. Shapes are those that
-        pictures show; one that holds the origin is not met.
+        """Finds the nearest shape of world env that the ray from origin [3] (m, world axes) along direction
+        [3] (any length above 0) enters within `range` m (above 0; may be INFINITY). It hits the shapes
+        that pictures show, except those that contain the origin.
         """),
     "rdm_pool_push": Function(
         c_int32, {"p": c_void_p, "env": c_int32, "shape": c_int32, "force": c_void_p},
         {"force": Rows("float32", ("3",))}, False,
-        """Pushes a shape's carrier during the next step: force [3] at its centre of mass, N, world axes."""),
+        """Pushes the body or link that has this shape during the next step: force [3] (N, world axes) at
+        its centre of mass.
+        """),
     "rdm_pool_world_error": Function(
         c_char_p, {"p": c_void_p, "env": c_int32},
         {}, False,
-        """What failed last in world env of the pool: "world 3: task press: judge: sensor lost", at most 255
-        bytes; "" at first, and for the library's own tasks. Kept until the world's next failure; no part
-        of a saved state.
+        """The text of the last failure in world env: "world 3: task press: judge: sensor lost", at most 255
+        bytes; "" at first, and always for the library's own tasks. It is kept until the world's next
+        failure and is not part of a saved state.
         """),
     "rdm_algo_count": Function(
         c_int32, {},
         {}, False,
-        """number of algorithms; 0 without the learning half"""),
+        """number of algorithms; 0 in a build without learning"""),
     "rdm_algo_at": Function(
         c_int32, {"index": c_int32, "io": POINTER(rdm_algo)},
         {}, False,
@@ -4792,7 +4822,7 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_algo_find": Function(
         c_int32, {"name": c_char_p, "index": c_void_p},
         {}, False,
-        """NOT_FOUND: nearest in the text"""),
+        """NOT_FOUND: the text offers the nearest"""),
     "rdm_algo_option_at": Function(
         c_int32, {"algo": c_int32, "i": c_int32, "io": POINTER(rdm_option_spec)},
         {}, False,
@@ -4830,116 +4860,123 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_agent_act": Function(
         c_int32, {"a": c_void_p, "obs": c_void_p, "mode": c_int32, "action": c_void_p},
         {"obs": Rows("float32", ("num_envs", "obs_dim")), "action": Rows("float32", ("num_envs", "action_dim"))}, False,
-        """action [num_envs][action_dim]: a sample (it is remembered, and record must follow) or the mean of
-        the policy for obs [num_envs][obs_dim] (nothing is remembered). One call is one decision: hold
-        the action for the option action_repeat control steps. Samples are not clipped.
+        """Writes to action [num_envs][action_dim] a sample of the policy for obs [num_envs][obs_dim], which
+        is remembered, so that rdm_agent_record must follow; or with RDM_ACT_MEAN its mean, of which
+        nothing is remembered. One call is one decision: hold the action for as many control steps as
+        option action_repeat says. Samples are not clipped.
         """),
     "rdm_agent_record": Function(
         c_int32, {"a": c_void_p, "t": POINTER(rdm_transition)},
         {}, False,
-        """STATE unless a sampled act came before, or when the horizon is full. ARGUMENT for a flag that is
-        neither 0 nor 1, a cost that is not finite or below 0, in any row, and for a reward or final_obs
-        that is not finite in a valid one. A row with valid 0 is not learned from and its reward does not
-        count; its cost counts, and an end in it ends the episode. Its steps count too, but in a row that
-        neither ends an episode nor follows another row of one: that is what next-step autoreset returns
-        for the step that only resets. An episode that is not over after max_steps control steps counts
-        as one there (RDM_EPOCH_CUT): its sums are closed and begin anew. The path continues, so the
-        value of the next observation follows, as after a truncation. Option episode_steps sets that
-        length, cost_limit_per_step a limit on the cost per control step, which needs no ends.
+        """Records what followed the last sampled act. STATE without such an act, or when the horizon is
+        full. ARGUMENT for a flag that is neither 0 nor 1, or a cost that is not finite or below 0, in
+        any row, and for a reward or final_obs that is not finite in a valid one. A row with valid 0 is
+        not learned from and its reward does not count; its cost counts, and an end in it ends the
+        episode. Its steps count too, except in a row that neither ends an episode nor follows another
+        row of one: next-step autoreset returns such a row for the step that only resets. An episode that
+        still runs after max_steps control steps is counted as ended there (RDM_EPOCH_CUT): its sums are
+        closed and begin anew. Learning treats that as a truncation, which the value of the next
+        observation follows. Option episode_steps sets that length; option cost_limit_per_step limits the
+        cost per control step instead, which needs no ends of episodes.
         """),
     "rdm_agent_put": Function(
         c_int32, {"a": c_void_p, "obs": c_void_p, "action": c_void_p, "t": POINTER(rdm_transition)},
-        {"obs": Rows("float32", ("num_envs", "obs_dim")), "action": Rows("float32", ("num_envs", "action_dim"))}, False,
-        """A decision that was taken elsewhere, by a robot or another process: obs [num_envs][obs_dim],
-        action [num_envs][action_dim] as the policy of this epoch sampled it, not clipped
-        (rdm_policy_sample), and what followed. It stands where rdm_agent_act with RDM_ACT_SAMPLE and
-        rdm_agent_record stand, the two may take turns, and its log-probability and values are computed
-        here: an agent of the same config and seed learns the same from it as one that acted, but the
-        streams of noise stay where they are. Rows of one environment are one path, in their order; with
-        option noise_correlation its noise is taken to continue from decision to decision. Option
-        normalize_obs keeps counting with each row, as in rdm_agent_act, while a policy file does not
-        change: obs_freeze ends that.
-        STATE as for rdm_agent_act, and for a generation that is not the agent's: its data are stale.
-        RANGE for an action beyond +-1e5, ARGUMENT as for rdm_agent_record; then nothing has changed.
-        UNSUPPORTED for an agent with option encoder, and for a generation where option average is on: a
-        policy file is the average then, and not what has to sample.
+        {"action": Rows("float32", ("num_envs", "action_dim"))}, False,
+        """Records a decision that was taken elsewhere, by a robot or in another process: obs
+        [num_envs][obs_dim], action [num_envs][action_dim] as the policy of this epoch sampled it, not
+        clipped (rdm_policy_sample), and what followed. It replaces an rdm_agent_act with RDM_ACT_SAMPLE
+        and its rdm_agent_record; the two ways may be mixed. Log-probabilities and values are computed
+        here, so an agent of the same config and seed learns the same as one that acted, except that its
+        streams of noise do not advance. The rows of one environment are one path, in their order; with
+        option noise_correlation its noise is taken to continue from decision to decision. With option
+        normalize_obs each row updates the statistics, as in rdm_agent_act, while a policy file that
+        samples elsewhere stays as it is: obs_freeze stops the updates.
+        STATE as for rdm_agent_act, and for a generation that is not the agent's: such data are stale.
+        RANGE for an action beyond +-1e5, ARGUMENT as for rdm_agent_record; nothing changes then.
+        UNSUPPORTED for an agent with option encoder, and for a generation with option average: a policy
+        file then holds the average, which is not the network that must sample.
         """),
     "rdm_agent_update": Function(
         c_int32, {"a": c_void_p, "last_obs": c_void_p, "io": POINTER(rdm_epoch)},
         {"last_obs": Rows("float32", ("num_envs", "obs_dim"))}, False,
-        """Learns from a full horizon; last_obs [num_envs][obs_dim] follows the last record. io may be NULL.
-        CANCELLED after rdm_agent_cancel: the horizon is dropped, full or not, and the policy is as
-        before. STATE when the horizon is not full.
+        """Learns from a full horizon; last_obs [num_envs][obs_dim] is the observation after the last
+        record. io may be NULL. CANCELLED after rdm_agent_cancel: the horizon is dropped, full or not,
+        and the policy is as before. STATE when the horizon is not full.
         """),
     "rdm_agent_update_begin": Function(
         c_int32, {"a": c_void_p, "last_obs": c_void_p},
         {"last_obs": Rows("float32", ("num_envs", "obs_dim"))}, False,
-        """The same in slices, for a control loop that must not wait: a robot at 1 kHz.
+        """The same in slices, for a control loop that must not wait, such as that of a robot at 1 kHz.
           rdm_agent_update_begin(agent, obs);
           for (int32_t done = 0; !done;) {
             wait_for_tick(obs);
             rdm_agent_act(agent, obs, RDM_ACT_MEAN, action);
             rdm_agent_update_slice(agent, 1, &done, &e);
           }
-        begin takes last_obs [num_envs][obs_dim], returns what rdm_agent_update returns before it learns,
-        and takes about as long as an rdm_agent_act. A slice does `units` (> 0) pieces of work; *done
-        becomes 1 with the last one, and io (may be NULL) is filled then. Pieces follow from the data
-        alone, and any slices give the bytes of one rdm_agent_update. The largest piece is one network
-        forth and back, or a trust region's product with it, over 256 rows on each thread, or over 64
-        where a minibatch has no more than 256; or some plain sums over all decisions of the horizon, or
-        over all parameters.
-        Between two slices the policy of before acts with RDM_ACT_MEAN and is what rdm_agent_write_policy
-        writes. Whatever would change the agent or read what is half learned returns STATE: sampled acts,
-        record, put, rollouts, options, tensors, values, states, checkpoints. rdm_agent_discard, a cancel
-        that the next slice hears (CANCELLED), and rdm_agent_read_state drop the update. The policy is
-        then as it was before; critics, optimisers and multipliers keep what they have learned.
+        rdm_agent_update_begin takes last_obs [num_envs][obs_dim], returns the errors that
+        rdm_agent_update returns before it learns, and takes about as long as an rdm_agent_act. A slice
+        does `units` (> 0) pieces of work; with the last piece *done becomes 1 and io (may be NULL) is
+        filled. The pieces depend on the data alone, and any division into slices gives the bytes of one
+        rdm_agent_update. The largest piece is one forward and backward pass of a network, or one
+        Fisher-vector product of a trust region, over 256 rows on each thread, or over 64 where a
+        minibatch has no more than 256; or a few plain sums over all decisions of the horizon, or over
+        all parameters.
+        Between two slices, RDM_ACT_MEAN and rdm_agent_write_policy use the policy from before the
+        update. Calls that would change the agent, or read what is not fully learned, return STATE:
+        sampled acts, record, put, rollouts, options, tensors, values, states, checkpoints. The update is
+        dropped by rdm_agent_discard, by rdm_agent_cancel (the next slice returns CANCELLED) and by
+        rdm_agent_read_state. The policy is then as it was before; critics, optimisers and multipliers
+        keep what they have learned.
         """),
     "rdm_agent_update_slice": Function(
         c_int32, {"a": c_void_p, "units": c_int32, "done": c_void_p, "io": POINTER(rdm_epoch)},
         {}, False,
-        """The same in slices, for a control loop that must not wait: a robot at 1 kHz.
+        """The same in slices, for a control loop that must not wait, such as that of a robot at 1 kHz.
           rdm_agent_update_begin(agent, obs);
           for (int32_t done = 0; !done;) {
             wait_for_tick(obs);
             rdm_agent_act(agent, obs, RDM_ACT_MEAN, action);
             rdm_agent_update_slice(agent, 1, &done, &e);
           }
-        begin takes last_obs [num_envs][obs_dim], returns what rdm_agent_update returns before it learns,
-        and takes about as long as an rdm_agent_act. A slice does `units` (> 0) pieces of work; *done
-        becomes 1 with the last one, and io (may be NULL) is filled then. Pieces follow from the data
-        alone, and any slices give the bytes of one rdm_agent_update. The largest piece is one network
-        forth and back, or a trust region's product with it, over 256 rows on each thread, or over 64
-        where a minibatch has no more than 256; or some plain sums over all decisions of the horizon, or
-        over all parameters.
-        Between two slices the policy of before acts with RDM_ACT_MEAN and is what rdm_agent_write_policy
-        writes. Whatever would change the agent or read what is half learned returns STATE: sampled acts,
-        record, put, rollouts, options, tensors, values, states, checkpoints. rdm_agent_discard, a cancel
-        that the next slice hears (CANCELLED), and rdm_agent_read_state drop the update. The policy is
-        then as it was before; critics, optimisers and multipliers keep what they have learned.
+        rdm_agent_update_begin takes last_obs [num_envs][obs_dim], returns the errors that
+        rdm_agent_update returns before it learns, and takes about as long as an rdm_agent_act. A slice
+        does `units` (> 0) pieces of work; with the last piece *done becomes 1 and io (may be NULL) is
+        filled. The pieces depend on the data alone, and any division into slices gives the bytes of one
+        rdm_agent_update. The largest piece is one forward and backward pass of a network, or one
+        Fisher-vector product of a trust region, over 256 rows on each thread, or over 64 where a
+        minibatch has no more than 256; or a few plain sums over all decisions of the horizon, or over
+        all parameters.
+        Between two slices, RDM_ACT_MEAN and rdm_agent_write_policy use the policy from before the
+        update. Calls that would change the agent, or read what is not fully learned, return STATE:
+        sampled acts, record, put, rollouts, options, tensors, values, states, checkpoints. The update is
+        dropped by rdm_agent_discard, by rdm_agent_cancel (the next slice returns CANCELLED) and by
+        rdm_agent_read_state. The policy is then as it was before; critics, optimisers and multipliers
+        keep what they have learned.
         """),
     "rdm_agent_rollout": Function(
         c_int32, {"a": c_void_p, "p": c_void_p, "io": POINTER(rdm_epoch)},
         {}, False,
-        """One epoch natively: act, step (action_repeat control steps), record until the horizon is full,
-        then update. The pool must have been reset and must not have autoreset off; dims and num_envs
-        must agree. A pool that repeats actions itself takes as many steps at a time: the agent's
-        action_repeat must be a multiple of the pool's, as the defaults are that
-        rdm_agent_config_for_pool sets. With the agent's option cost_signal=raw the costs are sums over
-        control steps of cost_raw where that is above 0.
+        """One epoch within the library: act, step (action_repeat control steps), record until the horizon
+        is full, then update. The pool must have been reset and must not have autoreset off; dims and
+        num_envs must agree. Where the pool has option action_repeat itself, the agent's action_repeat
+        must be a multiple of the pool's, as it is in the defaults that rdm_agent_config_for_pool sets.
+        With the agent's option cost_signal=raw the costs are sums over control steps of cost_raw where
+        that is above 0.
         """),
     "rdm_agent_cancel": Function(
         None, {"a": c_void_p},
         {}, False,
         """Async-signal-safe, from any thread: the running rollout or update returns CANCELLED. A horizon
-        that has begun by act and record is dropped by its update; between horizons, the next rollout,
-        update or first act with RDM_ACT_SAMPLE returns CANCELLED, before anything is collected.
+        that was begun by act and record is dropped when its update is called; between horizons, the next
+        rollout, update or first act with RDM_ACT_SAMPLE returns CANCELLED, before anything is
+        collected.
         """),
     "rdm_agent_discard": Function(
         c_int32, {"a": c_void_p},
         {}, False,
-        """Drops the horizon that has begun, an update in slices, and a cancel that waits: from any state
-        back to between epochs. The policy learns nothing from what it drops. Running episodes
-        continue, with what was recorded of them.
+        """Drops a horizon that has begun, an update in slices and a pending cancel: from any state back to
+        between epochs. The policy learns nothing from what is dropped. Running episodes continue, with
+        what was recorded of them.
         """),
     "rdm_agent_set_option": Function(
         c_int32, {"a": c_void_p, "option": POINTER(rdm_option)},
@@ -4948,9 +4985,9 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_agent_setting_at": Function(
         c_int32, {"a": c_void_p, "i": c_int32, "key": POINTER(c_char_p), "text": c_void_p},
         {}, False,
-        """What option i of the algorithm is in this agent: key (static) and the value as
-        text [RDM_TEXT_SIZE], which reads back exactly. RANGE for a text that is longer:
-        rdm_agent_get_settings has it.
+        """The value of option i of the algorithm in this agent: its key (static), and the value as text
+        [RDM_TEXT_SIZE], which reads back exactly. RANGE for a longer text: rdm_agent_get_settings has
+        it.
         """),
     "rdm_agent_get_settings": Function(
         c_int32, {"a": c_void_p, "text": c_void_p, "capacity": c_size_t, "size": c_void_p},
@@ -4985,11 +5022,11 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_policy_update_from": Function(
         c_int32, {"p": c_void_p, "a": c_void_p},
         {}, False,
-        """The agent's network and statistics as they are now, into a policy of the same sizes, without
-        memory: afterwards p is what rdm_agent_write_policy writes, but for the names of its fields.
-        ARGUMENT names what differs, in network, entries that it reads, normaliser, layout_hash or
-        action_repeat, and p is as it was. Nobody else may be in a call with p, nor an actor or planner
-        that plays it: a rdm_policy_act meanwhile is STATE.
+        """Copies the agent's present network and statistics into a policy of the same sizes, without
+        allocating: afterwards p is what rdm_agent_write_policy writes, but for the names of its fields.
+        ARGUMENT where network, entries that are read, normaliser, layout_hash or action_repeat differ:
+        the text says which, and p is as before. No other call may use p meanwhile, nor an actor or
+        planner that has it: an rdm_policy_act returns STATE then.
         """),
     "rdm_agent_write_state": Function(
         c_int32, {"a": c_void_p, "bytes": c_void_p, "capacity": c_size_t, "size": c_void_p},
@@ -5004,14 +5041,14 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_checkpoint_write": Function(
         c_int32, {"path": c_char_p, "a": c_void_p, "p": c_void_p, "note": c_void_p, "note_size": c_size_t},
         {}, False,
-        """Agent, pool (may be NULL) and a note [note_size] of the host's own, to 2^29 bytes, in one file,
-        replaced atomically.
+        """Writes agent, pool (may be NULL) and a note [note_size] of the host's own, of up to 2^29 bytes,
+        to one file, which is replaced atomically.
         """),
     "rdm_checkpoint_read": Function(
         c_int32, {"path": c_char_p, "a": c_void_p, "p": c_void_p, "note": c_void_p, "capacity": c_size_t, "note_size": c_void_p},
         {}, False,
-        """Reads it back; note [capacity] gets as many bytes, *note_size is how many there are. Nothing
-        changes on failure.
+        """Reads it back; note [capacity] receives the note, up to that many bytes, and *note_size is its
+        size. Nothing changes on failure.
         """),
     "rdm_pool_get_sensors": Function(
         c_int32, {"p": c_void_p, "io": POINTER(rdm_sensors)},
@@ -5020,27 +5057,27 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_pool_camera_at": Function(
         c_int32, {"p": c_void_p, "i": c_int32, "io": POINTER(rdm_camera_info)},
         {}, True,
-        """The i-th camera by whose name this pool can look: the task's, then those that ride on its robots
-        ("right_palm" and "left_palm" of hands), then those for clouds. RANGE ends.
+        """Camera i of those that this pool knows by name: the task's, then those on its robots
+        ("right_palm" and "left_palm" of hands), then those for clouds. RANGE past the end.
         """),
     "rdm_pool_sensor_camera_at": Function(
         c_int32, {"p": c_void_p, "cloud": c_int32, "i": c_int32, "io": POINTER(rdm_camera_info)},
         {}, True,
-        """The cameras that rows stand for: i-th of the pictures (cloud 0) or of points and voxels (cloud
-        1). RANGE ends.
+        """Camera i of the pictures (cloud 0), or of those that points and voxels come from (cloud 1). RANGE
+        past the end.
         """),
     "rdm_pool_get_hull": Function(
         c_int32, {"p": c_void_p, "i": c_int32, "points": c_void_p, "capacity": c_size_t, "count": c_void_p},
         {"points": Rows("float32", ("capacity", "3"))}, True,
-        """Corners, points [capacity][3], of shape i, an RDM_SHAPE_HULL, in its own frame, m. Writes up to
-        capacity of them; *count is how many there are.
+        """Writes up to capacity corners of shape i, an RDM_SHAPE_HULL, to points [capacity][3], in its own
+        frame, m; *count is how many there are.
         """),
     "rdm_sample_furthest": Function(
         c_int32, {"points": c_void_p, "count": c_size_t, "wanted": c_size_t, "start": c_int32, "chosen": c_void_p, "scratch": c_void_p, "scratch_bytes": c_size_t},
         {"points": Rows("float32", ("count", "3")), "chosen": Rows("int32", ("wanted",))}, True,
-        """`wanted` of points [count][3] that lie furthest from each other: their numbers, in order of
-        choice, to chosen [wanted]. `start` is the first. Exact. scratch [scratch_bytes]:
-        rdm_sample_scratch bytes or more, aligned in any way; no heap.
+        """Farthest point sampling: chooses `wanted` of points [count][3], first number `start`, then always
+        the one that is farthest from all chosen before, and writes their numbers to chosen [wanted].
+        Exact. scratch [scratch_bytes]: rdm_sample_scratch bytes or more, of any alignment; no heap.
         """),
     "rdm_sample_scratch": Function(
         c_size_t, {"count": c_size_t},
@@ -5053,7 +5090,7 @@ FUNCTIONS: dict[str, Function] = {
         {"obs": Rows("float32", ("num_envs", "obs_dim")), "action": Rows("float32", ("num_envs", "action_dim"))}, True,
         """As rdm_agent_act: action [num_envs][action_dim] for obs [num_envs][obs_dim] and as many clouds,
         of an agent with the option encoder; STATE without it. ARGUMENT for a point that is not finite,
-        RANGE for another number of points or a class that there is not: nothing is remembered.
+        RANGE for another number of points or a class that does not exist; nothing is remembered then.
         """),
     "rdm_policy_act_points": Function(
         c_int32, {"p": c_void_p, "obs": c_void_p, "points": POINTER(rdm_points), "rows": c_int32, "noise": c_void_p, "action": c_void_p, "scratch": c_void_p, "scratch_bytes": c_size_t},
@@ -5069,11 +5106,11 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_agent_pretrain": Function(
         c_int32, {"a": c_void_p, "points": POINTER(rdm_points), "label": c_void_p, "rows": c_int32, "how": POINTER(rdm_pretrain_config), "io": POINTER(rdm_pretrain_report)},
         {"label": Rows("uint8", ("rows", "num_points"))}, True,
-        """The agent's encoder learns to tell the points of clouds [rows] apart by label [rows][num_points],
-        each less than num_labels: a head reads a point's last hidden layer and the cloud's features, and
-        is thrown away afterwards. Nothing else changes. Same seed, same bytes, for any number of
-        threads. STATE inside a horizon or without an encoder; CANCELLED after rdm_agent_cancel: the
-        encoder as before. io may be NULL.
+        """Trains the agent's encoder to classify the points of clouds [rows] by label [rows][num_points],
+        each less than num_labels: a head that reads a point's last hidden layer and the cloud's features
+        is added, and thrown away afterwards. Nothing else changes. Same seed, same bytes, for any number
+        of threads. STATE inside a horizon or without an encoder; CANCELLED after rdm_agent_cancel: the
+        encoder is as before. io may be NULL.
         """),
     "rdm_map_config_init": Function(
         c_int32, {"c": POINTER(rdm_map_config), "size": c_size_t},
@@ -5092,8 +5129,8 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_map_error": Function(
         c_char_p, {"m": c_void_p},
         {}, True,
-        """Last failure of a call that may change the map; "" at first. Of those that only read, which many
-        threads may make at a time: rdm_last_error().
+        """Last failure of a call that may change the map; "" at first. Failures of calls that only read,
+        which many threads may make at a time, are in rdm_last_error().
         """),
     "rdm_map_get_info": Function(
         c_int32, {"m": c_void_p, "io": POINTER(rdm_map_info)},
@@ -5106,17 +5143,18 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_map_insert": Function(
         c_int32, {"m": c_void_p, "origin": c_void_p, "points": c_void_p, "count": c_size_t, "dropped": c_void_p},
         {"origin": Rows("float32", ("3",)), "points": Rows("float32", ("count", "3"))}, True,
-        """One scan: rays from origin [3] to points [count][3]. Each voxel changes once: up where a ray
-        ends, else down where rays pass. Points that are not finite are left out, and those nearer to the
-        origin than a voxel's side: a depth of 0 says that nothing was seen. A full map grows no more:
-        the call returns OK, *dropped (may be NULL) says how many voxels were left out, and voxels that
-        exist are still updated.
+        """Adds one scan: rays from origin [3] to points [count][3]. Each voxel changes once: its
+        probability rises where a ray ends, else falls where rays pass. Points that are not finite are
+        left out, and those nearer to the origin than a voxel's side: a depth of 0 says that nothing was
+        seen. A full map does not grow further: the call returns OK, *dropped (may be NULL) says how many
+        voxels were left out, and voxels that exist are still updated.
         """),
     "rdm_map_scan": Function(
         c_int32, {"m": c_void_p, "p": c_void_p, "env": c_int32, "camera": c_char_p, "w": c_int32, "h": c_int32, "skip": c_void_p, "num_skip": c_size_t, "dropped": c_void_p},
         {"skip": Rows("int32", ("num_skip",))}, True,
-        """One scan by a camera of the pool's task: depths of w x h rays of world env. Rays that end on one
-        of the num_skip shapes in skip [num_skip], or meet nothing, are left out. *dropped as above.
+        """Adds one scan by a camera of the pool's task: depths of w x h rays of world env. Rays that end on
+        one of the num_skip shapes in skip [num_skip], or meet nothing, are left out. *dropped as
+        above.
         """),
     "rdm_map_get_probabilities": Function(
         c_int32, {"m": c_void_p, "points": c_void_p, "count": c_size_t, "probability": c_void_p},
@@ -5125,13 +5163,13 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_map_get_voxels": Function(
         c_int32, {"m": c_void_p, "low": c_void_p, "high": c_void_p, "out": POINTER(rdm_voxel), "capacity": c_size_t, "count": c_void_p},
         {"low": Rows("float32", ("3",)), "high": Rows("float32", ("3",))}, True,
-        """Occupied voxels that meet the box from low [3] to high [3]: writes up to capacity to
-        out [capacity], *count is how many there are.
+        """Occupied voxels that overlap the box from low [3] to high [3]: writes up to capacity to out
+        [capacity], *count is how many there are.
         """),
     "rdm_map_meets": Function(
         c_int32, {"m": c_void_p, "pose": c_void_p, "half": c_void_p, "meets": c_void_p},
         {"pose": Rows("float64", ("7",)), "half": Rows("float32", ("3",))}, True,
-        """meets is 1 when an occupied voxel meets the box of half sizes half [3] that stands at `pose`."""),
+        """meets is 1 when an occupied voxel overlaps the box of half sizes half [3] at `pose`."""),
     "rdm_map_raycast": Function(
         c_int32, {"m": c_void_p, "origin": c_void_p, "direction": c_void_p, "range": c_float, "through_unknown": c_int32, "hit": c_void_p, "found": c_void_p},
         {"origin": Rows("float32", ("3",)), "direction": Rows("float32", ("3",)), "hit": Rows("float32", ("3",))}, True,
@@ -5143,13 +5181,13 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"m": c_void_p, "points": c_void_p, "count": c_size_t, "most": c_float, "distance": c_void_p},
         {"points": Rows("float32", ("count", "3")), "distance": Rows("float32", ("count",))}, True,
         """distance [count] from each of points [count][3] to the nearest point of an occupied voxel, m;
-        `most` if none is so near.
+        `most` when none is that near.
         """),
     "rdm_map_get_grid": Function(
         c_int32, {"m": c_void_p, "pose": c_void_p, "n": c_void_p, "side": c_float, "out": c_void_p},
         {"pose": Rows("float64", ("7",)), "n": Rows("int32", ("3",)), "out": Rows("int8", ("n0", "n1", "n2"))}, True,
-        """A grid of counts n [3] of cells of `side` m (each count 1 to 1024) about `pose`: what the map
-        says at their centres, out [n0][n1][n2], x outermost: 1 occupied, 0 free, -1 unknown.
+        """Samples the map at the centres of a grid around `pose`, of n [3] cells (1 to 1024 each) of `side`
+        m, to out [n0][n1][n2], x outermost: 1 occupied, 0 free, -1 unknown.
         """),
     "rdm_map_write": Function(
         c_int32, {"m": c_void_p, "format": c_int32, "bytes": c_void_p, "capacity": c_size_t, "size": c_void_p},
@@ -5158,12 +5196,14 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_map_write_file": Function(
         c_int32, {"m": c_void_p, "path": c_char_p},
         {}, True,
-        """by its ending; replaced atomically"""),
+        """format by the file's ending; replaced
+        atomically
+        """),
     "rdm_map_read": Function(
         c_int32, {"m": c_void_p, "bytes": c_void_p, "size": c_size_t},
         {}, True,
-        """bytes [size] of a file take the place of what the map holds, resolution included. FORMAT, or
-        MEMORY when it does not fit: unchanged.
+        """Replaces what the map holds, resolution included, by bytes [size] of a file. FORMAT, or MEMORY
+        when it does not fit; the map is unchanged then.
         """),
     "rdm_map_read_file": Function(
         c_int32, {"m": c_void_p, "path": c_char_p},
@@ -5178,7 +5218,7 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_actor_config_memory": Function(
         c_int32, {"c": POINTER(rdm_actor_config), "bytes": c_void_p},
         {}, True,
-        """Bytes *bytes that creation takes from the alloc hook, exact."""),
+        """bytes that creation takes from the alloc hook, exact."""),
     "rdm_actor_create": Function(
         c_int32, {"out": POINTER(c_void_p), "c": POINTER(rdm_actor_config)},
         {}, True,
@@ -5208,9 +5248,9 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_actor_reset": Function(
         c_int32, {"actor": c_void_p, "terminated": c_void_p, "truncated": c_void_p},
         {"terminated": Rows("uint8", ("num_envs",)), "truncated": Rows("uint8", ("num_envs",))}, True,
-        """Episodes begin anew where terminated [num_envs] or truncated [num_envs] is not 0: a decision is
-        due there, and its noise is fresh. Either may be NULL; both NULL: everywhere. Any mask will do in
-        the place of one of them.
+        """Begins new episodes where terminated [num_envs] or truncated [num_envs] is not 0: a decision is
+        due there, with fresh noise. Either may be NULL; both NULL: everywhere. Any mask may be given as
+        one of them.
         """),
     "rdm_actor_write_state": Function(
         c_int32, {"actor": c_void_p, "bytes": c_void_p, "capacity": c_size_t, "size": c_void_p},
@@ -5221,7 +5261,9 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_actor_read_state": Function(
         c_int32, {"actor": c_void_p, "bytes": c_void_p, "size": c_size_t},
         {}, True,
-        """Of bytes [size]. FORMAT for bytes that are not whole, or of another actor: nothing changes."""),
+        """Of bytes [size]. FORMAT for bytes that are truncated or of another actor; nothing changes
+        then.
+        """),
     "rdm_planner_config_init": Function(
         c_int32, {"c": POINTER(rdm_planner_config), "size": c_size_t},
         {}, True,
@@ -5265,12 +5307,12 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"planner": c_void_p, "pool": c_void_p, "env": c_int32, "action": c_void_p, "io": POINTER(rdm_plan_info)},
         {"action": Rows("float32", ("action_dim",))}, True,
         """Plans from the state that world env of the pool is in now, and writes the plan's first action to
-        action [action_dim]. The pool is only read; it has the task and options of the one that the
-        planner was made for, else ARGUMENT. io may be NULL. STATE where no episode runs. No heap.
-        Where config.stop says so it plans no further: action, plan and what follows have the bytes of a
-        planner whose option iterations is io.iterations. Before the first iteration was finished the
-        plan of before is followed, shifted by a step; without one, the policy's rollout so far or
-        rdm_pool_get_initial_mean; and the next call plans. CANCELLED after rdm_planner_cancel: as after
+        action [action_dim]. The pool is only read; it must have the task and options of the one that the
+        planner was made for, else ARGUMENT. io may be NULL. STATE where no episode runs. No heap. When
+        config.stop ends it early, action, plan and all that follows have the bytes of a planner whose
+        option iterations is io.iterations. When no iteration was finished, the plan of before is
+        followed, shifted by a step (without one: the policy's rollout so far, or
+        rdm_pool_get_initial_mean), and the next call plans. CANCELLED after rdm_planner_cancel; as after
         every error, plan, noise, action and io are as before.
         """),
     "rdm_planner_cancel": Function(
@@ -5288,14 +5330,14 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_planner_get_plan": Function(
         c_int32, {"planner": c_void_p, "plan": c_void_p},
         {"plan": Rows("float32", ("horizon", "action_dim"))}, True,
-        """The plan as it is to plan [horizon][action_dim]: row 0 is the action that rdm_planner_act
+        """Writes the present plan to plan [horizon][action_dim]: row 0 is the action that rdm_planner_act
         gave.
         """),
     "rdm_planner_set_plan": Function(
         c_int32, {"planner": c_void_p, "plan": c_void_p},
         {"plan": Rows("float32", ("horizon", "action_dim"))}, True,
-        """The next call begins at plan [horizon][action_dim], cut to [-1, 1], not shifted. ARGUMENT for
-        entries that are not finite. With a policy it is tried as sample 1.
+        """The next rdm_planner_act begins at plan [horizon][action_dim], clipped to [-1, 1] and not
+        shifted. ARGUMENT for entries that are not finite. With a policy it is tried as sample 1.
         """),
     "rdm_planner_write_state": Function(
         c_int32, {"planner": c_void_p, "bytes": c_void_p, "capacity": c_size_t, "size": c_void_p},
@@ -5306,32 +5348,34 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_planner_read_state": Function(
         c_int32, {"planner": c_void_p, "bytes": c_void_p, "size": c_size_t},
         {}, True,
-        """Of bytes [size]. FORMAT for bytes that are not whole, or of another planner: nothing changes."""),
+        """Of bytes [size]. FORMAT for bytes that are truncated or of another planner; nothing changes
+        then.
+        """),
     "rdm_agent_get_values": Function(
         c_int32, {"a": c_void_p, "obs": c_void_p, "rows": c_int32, "value": c_void_p, "cost": c_void_p},
         {"obs": Rows("float32", ("rows", "obs_dim")), "value": Rows("float32", ("rows",)), "cost": Rows("float32", ("rows", "RDM_MAX_COSTS"))}, True,
-        """What the agent's critics say of obs [rows][obs_dim], for any number of rows: value [rows], the
-        discounted sum of rewards to come, and the same of the cost columns that it limits,
-        cost [rows][RDM_MAX_COSTS] by column, others 0; cost may be NULL. UNSUPPORTED with options
-        normalize_reward or normalize_cost, which leave critics no unit.
+        """What the agent's critics predict for obs [rows][obs_dim], any number of rows: to value [rows] the
+        discounted sum of future rewards, and to cost [rows][RDM_MAX_COSTS] that of each cost column
+        which the agent limits, 0 in others; cost may be NULL. UNSUPPORTED with options normalize_reward
+        or normalize_cost, under which critics have no unit.
         """),
     "rdm_pool_guard_at": Function(
         c_int32, {"pool": c_void_p, "i": c_int32, "io": POINTER(rdm_guard), "normal": c_void_p},
         {"normal": Rows("float32", ("action_dim",))}, True,
-        """Guard i that the pool's task declares, and its normal [action_dim]; NULL: not asked for. RANGE
-        past the end: at 0 for a task whose costs are of states, and wherever what is done is not what
-        the action says: with a measured angle in the place of the command, action_average below 1,
-        another control than position, delayed actions.
+        """Guard i that the pool's task declares, and its normal [action_dim]; NULL: not wanted. RANGE past
+        the end. There is none for a task whose costs depend on states, nor where drives do not follow
+        the action exactly: with a measured angle instead of the command, action_average below 1, another
+        control than position, or delayed actions.
         """),
     "rdm_project": Function(
         c_int32, {"normals": c_void_p, "bounds": c_void_p, "count": c_size_t, "dim": c_size_t, "action": c_void_p, "nearest": c_void_p},
-        {"normals": Rows("float32", ("count", "dim")), "bounds": Rows("float32", ("count",)), "action": Rows("float32", ("dim",)), "nearest": Rows("float32", ("dim",))}, True,
-        """nearest [dim], of all in [-1, 1] with normals [count][dim] . nearest <= bounds [count] the one
-        nearest to action [dim] in the Euclidean norm; the two may be the same array. Rows of a single
-        entry are kept to the bit, others to the rounding of a float (2^-24 of the sum of their entries'
-        sizes). Neither pool nor memory is needed. ARGUMENT for a row of zeros, for what is not finite,
-        and where no action keeps all rows; RANGE for a count above RDM_MAX_GUARDS and a dim outside
-        [1, 1024].
+        {"normals": Rows("float32", ("count", "dim")), "action": Rows("float32", ("dim",)), "nearest": Rows("float32", ("dim",))}, True,
+        """Writes to nearest [dim] the point in [-1, 1] with normals [count][dim] . nearest <= bounds
+        [count] that is nearest to action [dim] in the Euclidean norm; the two may be the same array.
+        Bounds whose normal has a single entry are met exactly, others up to the rounding of a float
+        (2^-24 of the sum of the entries' magnitudes). Neither pool nor memory is needed. ARGUMENT for a
+        normal of zeros, for numbers that are not finite, and where no point meets all bounds; RANGE for
+        a count above RDM_MAX_GUARDS and a dim outside [1, 1024].
         """),
     "rdm_shield_config_init": Function(
         c_int32, {"c": POINTER(rdm_shield_config), "size": c_size_t},
@@ -5342,31 +5386,32 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_shield_create": Function(
         c_int32, {"out": POINTER(c_void_p), "c": POINTER(rdm_shield_config)},
         {}, True,
-        """Makes the shield and its copies. ARGUMENT, RANGE, NOT_FOUND name what is wrong; of the policy as
-        rdm_shield_add_policy.
+        """Makes the shield and its copies. ARGUMENT, RANGE, NOT_FOUND name what is wrong; for the policy,
+        errors are those of rdm_shield_add_policy.
         """),
     "rdm_shield_add_policy": Function(
         c_int32, {"shield": c_void_p, "policy": c_void_p},
         {}, True,
-        """One backup more, behind the policies that it has: its mean actions. It must outlive the shield.
-        VERSION_MISMATCH for one that does not fit the pool, ARGUMENT for one that holds its actions for
-        another time than a decision and with predict=false, UNSUPPORTED for one that reads points, RANGE
-        from the seventh on or where option tries is too small. Plans stay.
+        """Adds a policy's mean actions as a backup, after the policies that the shield has. It must outlive
+        the shield. VERSION_MISMATCH for one that does not fit the pool, ARGUMENT for one that holds its
+        actions longer or shorter than a decision lasts, and with predict=false, UNSUPPORTED for one that
+        reads points, RANGE from the seventh on or where option tries is too small. Plans stay.
         """),
     "rdm_shield_add_guard": Function(
         c_int32, {"shield": c_void_p, "normal": c_void_p, "bound": c_float},
         {"normal": Rows("float32", ("action_dim",))}, True,
-        """One guard more, the host's own, of all worlds: normal [action_dim] . action <= bound, copied.
-        ARGUMENT for a row of zeros, what is not finite, and where no action keeps it beside those that
-        there are; RANGE for one more than RDM_MAX_GUARDS: nothing changes then. Plans are forgotten.
+        """Adds a guard of the host's own for all worlds: normal [action_dim] . action <= bound, copied.
+        ARGUMENT for a normal of zeros, for numbers that are not finite, and where no action keeps it
+        together with the other guards; RANGE beyond RDM_MAX_GUARDS. Nothing changes then. Plans are
+        forgotten.
         """),
     "rdm_shield_set_guard": Function(
         c_int32, {"shield": c_void_p, "env": c_int32, "i": c_int32, "normal": c_void_p, "bound": c_float},
         {"normal": Rows("float32", ("action_dim",))}, True,
-        """The host's own guard i, counted from the first that was added, of world env alone from now on:
-        normal [action_dim], as a model says it of the state that the world is in. No heap. The errors of
-        rdm_shield_add_guard: the world's guards stay then. Its plan is forgotten where something
-        differs.
+        """Sets the host's own guard i, counted from the first that was added, for world env alone from now
+        on: for example what a model says of normal [action_dim] and bound in the world's present state.
+        No heap. Errors are those of rdm_shield_add_guard, and the world's guards stay then. The world's
+        plan is forgotten if the guard differs from before.
         """),
     "rdm_shield_destroy": Function(
         None, {"shield": c_void_p},
@@ -5393,14 +5438,14 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_shield_act": Function(
         c_int32, {"shield": c_void_p, "pool": c_void_p, "mask": c_void_p, "proposed": c_void_p, "action": c_void_p},
         {"mask": Rows("uint8", ("num_envs",)), "proposed": Rows("float32", ("num_envs", "action_dim")), "action": Rows("float32", ("num_envs", "action_dim"))}, True,
-        """action [num_envs][action_dim] for a decision of the worlds whose mask [num_envs] is not 0 (NULL:
-        all), where proposed [num_envs][action_dim] is what each would do; the two may be the same array,
-        and rows of other worlds are not written. The pool is only read; it has the task, options and
-        number of worlds of the one that the shield was made for, else ARGUMENT. The action is then held
-        for config.steps steps of the pool. A world whose episode began anew, or whose state was set, is
-        noticed. STATE for a world without an episode, and for one in which nothing that was tried is
-        clean, which the text names, and with predict=false where there are no guards: nothing is written
-        then.
+        """Writes to action [num_envs][action_dim] a decision for the worlds whose mask [num_envs] is not 0
+        (NULL: all), given the proposed [num_envs][action_dim] one; the two may be the same array, and
+        rows of other worlds are not written. The pool is only read; it must have the task, options and
+        number of worlds of the one that the shield was made for, else ARGUMENT. Hold the action for
+        config.steps steps of the pool. The shield notices when a world began a new episode or its state
+        was set. STATE for a world without an episode, for one in which nothing that was tried keeps the
+        budgets, which the text names, and with predict=false where there are no guards; nothing is
+        written then.
         """),
     "rdm_shield_get_row": Function(
         c_int32, {"shield": c_void_p, "pool": c_void_p, "env": c_int32, "io": POINTER(rdm_shield_row)},
@@ -5409,27 +5454,28 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_shield_get_kinds": Function(
         c_int32, {"shield": c_void_p, "kind": c_void_p},
         {"kind": Rows("int32", ("num_envs",))}, True,
-        """The RDM_SHIELD_... of each world's last decision to kind [num_envs]."""),
+        """Writes the RDM_SHIELD_... of each world's last decision to kind [num_envs]."""),
     "rdm_shield_set_plan": Function(
         c_int32, {"shield": c_void_p, "pool": c_void_p, "env": c_int32, "plan": c_void_p, "decisions": c_size_t},
         {"plan": Rows("float32", ("decisions", "action_dim"))}, True,
-        """plan [decisions][action_dim], of a demonstration or a planner, becomes the plan of world env once
-        it is projected and clean in a copy; where it ends before the episode, a backup goes on. Where
-        nothing new is clean the world then follows it. STATE: a budget is exceeded, which the text names
-        with the control steps until then, or no episode runs; the plan before stays. UNSUPPORTED with
-        copies=K. RANGE: more decisions than an episode has.
+        """Makes plan [decisions][action_dim], of a demonstration or a planner, the plan of world env if a
+        copy that follows it, projected onto the guards, keeps the budgets; where it ends before the
+        episode, a backup continues. The world follows it when nothing new keeps the budgets. STATE where
+        a budget is exceeded, which the text names with the control steps until then, or no episode runs;
+        the plan from before stays then. UNSUPPORTED with copies=K. RANGE for more decisions than an
+        episode has.
         """),
     "rdm_shield_get_plan": Function(
         c_int32, {"shield": c_void_p, "pool": c_void_p, "env": c_int32, "plan": c_void_p, "capacity": c_size_t, "size": c_void_p},
         {"plan": Rows("float32", ("capacity",))}, True,
-        """The plan of world env as it is to plan [capacity] numbers, a row of action_dim for each decision
-        from now to the end; *size is how many numbers there are, 0: it has none.
+        """Writes the present plan of world env to plan [capacity], a row of action_dim numbers for each
+        decision from now to the end; *size is how many numbers there are, 0 without a plan.
         """),
     "rdm_shield_get_stats": Function(
         c_int32, {"shield": c_void_p, "io": POINTER(rdm_shield_stats)},
         {}, True,
-        """The plan of world env as it is to plan [capacity] numbers, a row of action_dim for each decision
-        from now to the end; *size is how many numbers there are, 0: it has none.
+        """Writes the present plan of world env to plan [capacity], a row of action_dim numbers for each
+        decision from now to the end; *size is how many numbers there are, 0 without a plan.
         """),
     "rdm_shield_reset": Function(
         c_int32, {"shield": c_void_p, "mask": c_void_p},
@@ -5439,33 +5485,36 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"shield": c_void_p, "bytes": c_void_p, "capacity": c_size_t, "size": c_void_p},
         {}, True,
         """Plans, noise, counts and the host's guards as bytes [capacity]; NULL asks for the size. A shield
-        of the same config with as many guards that reads them continues with the same bytes, beside a
-        pool that was set to the state of that moment.
+        of the same config with as many guards that reads them continues with the same bytes, if its pool
+        is set to the state of that moment too.
         """),
     "rdm_shield_read_state": Function(
         c_int32, {"shield": c_void_p, "bytes": c_void_p, "size": c_size_t},
         {}, True,
-        """Of bytes [size]. FORMAT for bytes that are not whole, or of another shield: nothing changes."""),
+        """Of bytes [size]. FORMAT for bytes that are truncated or of another shield; nothing changes
+        then.
+        """),
     "rdm_agent_set_shield": Function(
         c_int32, {"a": c_void_p, "shield": c_void_p},
         {}, True,
-        """rdm_agent_rollout lets the shield look at every decision from now on; NULL: none any more. The
-        shield is for a pool of as many worlds, its decisions last as long as the agent's, else rollouts
-        return ARGUMENT; it must outlive the agent, or be taken off before. Its first backup is then what
-        the agent itself would do without noise. The agent's noise is foreseen for option block decisions
-        at once: where statistics of observations have moved since, what was foreseen runs and is learned
-        from, with its own density. What is learned from what it refuses, or projects, is the agent's
-        option shield_learn:
+        """From now on the shield checks every decision of rdm_agent_rollout; NULL: no shield any more. It
+        must be for a pool of as many worlds, and its decisions must last as long as the agent's, else
+        rollouts return ARGUMENT; it must outlive the agent, or be taken off before. Its first backup is
+        then the agent itself without noise. The shield checks as many decisions ahead as its option
+        block says, with the agent's noise; where the statistics of observations have changed since, the
+        actions that were checked are executed and learned from, with their own density. The agent's
+        option shield_learn says what it learns from decisions that the shield refuses or projects:
 
-          own      the agent's own action and density, with what came of the one that ran
-          applied  the action that ran, with its density
-          cost     own, and the cost of column 0 is 1 for each refused decision; the limit on that
-                   column is then of refusals in an episode: option cost_limit, 1 by default
+          own      the agent's own action and density, with the outcome of the one executed
+          applied  the action executed, with its density
+          cost     as own, but the cost of column 0 is 1 for each refused decision; option cost_limit (1
+                   by default) then limits the refusals in an episode
           end      the episode ends before the action runs (a reward of 0, terminated), and the world
                    begins another; where rewards are below 0 use shield_penalty, or ending is attractive
 
-        shield_penalty is taken from the reward of refused decisions with each. Plans are state: a run
-        that is resumed to the byte saves the shield's, too. STATE inside a horizon.
+        With each of them, shield_penalty is subtracted from the reward of refused decisions. To resume a
+        run with the same bytes, save the state of the shield too, which holds its plans. STATE inside a
+        horizon.
         """),
     "rdm_recording_config_init": Function(
         c_int32, {"c": POINTER(rdm_recording_config), "size": c_size_t},
@@ -5490,8 +5539,8 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_recording_error": Function(
         c_char_p, {"r": c_void_p},
         {}, True,
-        """Last failure of a call that may change it; "" at first. Of those that only read:
-        rdm_last_error().
+        """Last failure of a call that may change the recording; "" at first. Failures of calls that only
+        read are in rdm_last_error().
         """),
     "rdm_recording_get_info": Function(
         c_int32, {"r": c_void_p, "io": POINTER(rdm_recording_info)},
@@ -5504,45 +5553,45 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_recording_append": Function(
         c_int32, {"r": c_void_p, "rows": POINTER(rdm_recording_rows)},
         {}, True,
-        """Adds rows of a host's own; their episodes are numbered behind those that are there, actions and
-        labels are cut to [-1, 1]. ARGUMENT for numbers that are not finite, flags that are not 0 or 1,
-        episodes or states out of order: nothing changes.
+        """Adds rows of a host's own; their episodes are numbered after those that are there, and actions
+        and labels are clipped to [-1, 1]. ARGUMENT for numbers that are not finite, flags that are not 0
+        or 1, episodes or states out of order; nothing changes then.
         """),
     "rdm_recording_append_all": Function(
         c_int32, {"r": c_void_p, "other": c_void_p},
         {}, True,
-        """Adds all of another one with the same dims, layout_hash and state_bytes."""),
+        """Adds all rows of another recording with the same dims, layout_hash and state_bytes."""),
     "rdm_recording_begin_step": Function(
         c_int32, {"r": c_void_p, "p": c_void_p, "label": c_void_p, "mask": c_void_p},
         {"label": Rows("float32", ("num_envs", "action_dim")), "mask": Rows("uint8", ("num_envs",))}, True,
-        """Around rdm_pool_step, for worlds whose mask [num_envs] is not 0 (NULL: all): begin_step adds a
-        row with the pool's obs and action, and label [num_envs][action_dim] (NULL: as the action);
-        actions and labels are cut to [-1, 1]. end_step adds the step's reward, costs and flags to it;
-        several steps between two begin_step make one row, of sums. A world that ended begins an episode
-        with its next row; one that a pool with next-step autoreset is about to reset gets none. A
-        recording follows one pool at a time: another one begins new episodes.
+        """Called before and after rdm_pool_step, for worlds whose mask [num_envs] is not 0 (NULL: all):
+        begin_step adds a row with the pool's obs and action, and label [num_envs][action_dim] (NULL: as
+        the action); actions and labels are clipped to [-1, 1]. end_step adds the step's reward, costs
+        and flags to it; several steps between two begin_step make one row, of sums. A world that ended
+        begins an episode with its next row; one that a pool with next-step autoreset is about to reset
+        gets no row. A recording follows one pool at a time: rows of another one begin new episodes.
         """),
     "rdm_recording_end_step": Function(
         c_int32, {"r": c_void_p, "p": c_void_p, "mask": c_void_p},
         {"mask": Rows("uint8", ("num_envs",))}, True,
-        """Around rdm_pool_step, for worlds whose mask [num_envs] is not 0 (NULL: all): begin_step adds a
-        row with the pool's obs and action, and label [num_envs][action_dim] (NULL: as the action);
-        actions and labels are cut to [-1, 1]. end_step adds the step's reward, costs and flags to it;
-        several steps between two begin_step make one row, of sums. A world that ended begins an episode
-        with its next row; one that a pool with next-step autoreset is about to reset gets none. A
-        recording follows one pool at a time: another one begins new episodes.
+        """Called before and after rdm_pool_step, for worlds whose mask [num_envs] is not 0 (NULL: all):
+        begin_step adds a row with the pool's obs and action, and label [num_envs][action_dim] (NULL: as
+        the action); actions and labels are clipped to [-1, 1]. end_step adds the step's reward, costs
+        and flags to it; several steps between two begin_step make one row, of sums. A world that ended
+        begins an episode with its next row; one that a pool with next-step autoreset is about to reset
+        gets no row. A recording follows one pool at a time: rows of another one begin new episodes.
         """),
     "rdm_recording_filter": Function(
         c_int32, {"r": c_void_p, "need_success": c_int32, "max_cost": c_void_p, "dropped": c_void_p},
         {"max_cost": Rows("float64", ("cost_dim",))}, True,
-        """Drops whole episodes: with need_success 1 those without a success, those whose sum of a cost is
-        above its max_cost [cost_dim] (NULL, or a negative number: any). *dropped (may be NULL) says how
-        many. The others are numbered anew; episodes that still run are closed.
+        """Drops whole episodes: with need_success 1 those without a success, and those whose sum of a cost
+        is above its max_cost [cost_dim] (NULL, or a negative number: not checked). *dropped (may be
+        NULL) says how many. The others are numbered anew; episodes that still run are closed.
         """),
     "rdm_recording_clear": Function(
         c_int32, {"r": c_void_p},
         {}, True,
-        """no rows; memory stays"""),
+        """drops all rows; memory stays"""),
     "rdm_recording_write_file": Function(
         c_int32, {"r": c_void_p, "path": c_char_p},
         {}, True,
@@ -5553,9 +5602,9 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_recording_read_file": Function(
         c_int32, {"out": POINTER(c_void_p), "path": c_char_p},
         {}, True,
-        """Makes one of such a file, also as numpy.savez writes it, or of one that `redman rollout --record`
-        wrote. NOT_FOUND; FORMAT when a checksum, a shape or a number is wrong, VERSION_MISMATCH for a
-        newer one.
+        """Makes a recording from such a file, also one that numpy.savez or `redman rollout --record` wrote.
+        NOT_FOUND; FORMAT when a checksum, a shape or a number is wrong, VERSION_MISMATCH for a newer
+        file.
         """),
     "rdm_clone_config_init": Function(
         c_int32, {"how": POINTER(rdm_clone_config), "size": c_size_t},
@@ -5567,44 +5616,48 @@ FUNCTIONS: dict[str, Function] = {
         """Behaviour cloning: the actor's mean is fitted to the labels by Adam on minibatches, and the
         weights with the least validation loss are kept; critics and multipliers stay, and the actor's
         optimiser begins anew. Between epochs of the agent: STATE inside a horizon. how NULL: defaults;
-        io may be NULL. CANCELLED after rdm_agent_cancel: weights and statistics as before.
+        io may be NULL. CANCELLED after rdm_agent_cancel: weights and statistics are as before.
         """),
     "rdm_agent_set_recording": Function(
         c_int32, {"a": c_void_p, "r": c_void_p},
         {}, True,
-        """The rows that the options `imitation` and `imitation_decay` hold the actor near; obs and label
-        are copied. NULL: none. A state that was saved with some loads only beside the same ones.
+        """Sets the rows that options `imitation` and `imitation_decay` keep the actor near; obs and label
+        are copied. NULL: none. A state of the agent that was saved with rows can be read only with the
+        same rows set.
         """),
     "rdm_agent_set_policy": Function(
         c_int32, {"a": c_void_p, "p": c_void_p, "samples": c_double},
         {}, True,
-        """Warm start: the actor, its deviation and the statistics of observations become the policy's,
-        which count for `samples` (2 to 10^12) observations; its optimiser begins anew. STATE inside a
-        horizon; ARGUMENT where layout, hidden layers, activation, std_mode, actor_obs, encoder or
-        normalize_obs differ: the text says which, and nothing changes.
+        """Warm start: the actor, its standard deviation and the statistics of observations become those of
+        the policy; the statistics count for `samples` (2 to 10^12) observations, and the actor's
+        optimiser begins anew. STATE inside a horizon; ARGUMENT where layout, hidden layers, activation,
+        std_mode, actor_obs, encoder or normalize_obs differ: the text says which, and nothing
+        changes.
         """),
     "rdm_pool_set_starts": Function(
         c_int32, {"p": c_void_p, "r": c_void_p, "share": c_double},
         {}, True,
-        """Worlds begin an episode, with probability `share` (0 to 1), at a state of the recording, drawn
-        from a stream of their own: all other draws are what they are without. Such an episode has the
-        steps that are left; sums begin at 0. States are copied, and each is tried: FORMAT, and nothing
-        changes. r NULL: the states of the last call, with another share; 0 at first. The streams and the
-        share are part of the state of all worlds (env -1), which loads only beside the same states.
+        """Worlds begin an episode, with probability `share` (0 to 1), at a state of the recording. Random
+        streams of their own choose it, so all other draws are the same as without. Such an episode has
+        only the steps that were left of the recorded one; its sums begin at 0. States are copied after
+        each was tried: FORMAT for one that does not fit, and nothing changes. r NULL: keeps the states
+        of the last call, with another share; the share is 0 at first. The streams and the share are part
+        of the state of all worlds (env -1), which can be read only with the same states set.
         """),
     "rdm_agent_create_ranked": Function(
         c_int32, {"out": POINTER(c_void_p), "c": POINTER(rdm_agent_config), "ranks": POINTER(rdm_ranks)},
         {}, True,
-        """As rdm_agent_create, of a rank's agent: c.num_envs worlds of ranks * c.num_envs. Takes more
-        memory than rdm_agent_config_memory says: a message, half a MiB at most where rows are no wider,
-        for each rank. The hooks must outlive the agent.
+        """As rdm_agent_create, for the agent of one rank: c.num_envs of the ranks * c.num_envs worlds.
+        Takes more memory than rdm_agent_config_memory says: a message for each rank, of at most half a
+        MiB unless a row is longer. The hooks must outlive the agent.
         """),
     "rdm_pool_set_rank": Function(
         c_int32, {"p": c_void_p, "rank": c_int32, "ranks": c_int32},
         {}, True,
-        """Worlds of the pool are numbers rank * num_envs on of ranks * num_envs: of their streams, and of a
-        state of all worlds (env -1), from which read_state takes them. Before the first reset; STATE
-        afterwards. rdm_agent_rollout needs agent and pool of one rank.
+        """Numbers the worlds of the pool from rank * num_envs on, of ranks * num_envs in all. The numbers
+        choose their random streams, and the part that read_state takes from a state of all worlds (env
+        -1). Call it before the first reset; STATE afterwards. rdm_agent_rollout needs an agent and a
+        pool of the same rank.
         """),
     "rdm_robot_def_init": Function(
         c_int32, {"def": POINTER(rdm_robot_def), "size": c_size_t},
@@ -5613,9 +5666,9 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_robot_create": Function(
         c_int32, {"out": c_void_p, "def": POINTER(rdm_robot_def)},
         {}, True,
-        """Adds a robot under a number of its own, *out for rdm_robot_at and what follows here. ARGUMENT,
-        RANGE: the text names the row; a name that is taken is an ARGUMENT. Moments must be positive and
-        keep the triangle rule.
+        """Adds a robot and writes its number to *out, for rdm_robot_at and the functions below. ARGUMENT,
+        RANGE: the text names the row; ARGUMENT for a name that is already used. Principal moments must
+        be positive and satisfy the triangle inequality.
         """),
     "rdm_robot_destroy": Function(
         c_int32, {"robot": c_int32},
@@ -5625,8 +5678,8 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"out": c_void_p, "name": c_char_p, "arm": c_int32, "hand": c_int32, "yaw": c_double, "adapter": c_double, "left": c_int32},
         {}, True,
         """A hand on an arm as a robot of its own, under `name`: its root and the arm's last link are one
-        body. The hand is turned by `yaw` (rad) about the flange's z and stands off by `adapter` (m);
-        left: its mirror image. UNSUPPORTED: no arm, no hand.
+        body. The hand is rotated by `yaw` (rad) about the flange's z and moved out by `adapter` (m);
+        left: its mirror image. UNSUPPORTED unless they are an arm and a hand.
         """),
     "rdm_robot_get_def": Function(
         c_int32, {"robot": c_int32, "io": POINTER(rdm_robot_def)},
@@ -5666,15 +5719,17 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_robot_get_poses": Function(
         c_int32, {"robot": c_int32, "q": c_void_p, "links": c_void_p, "flange": c_void_p, "tips": c_void_p, "palm": c_void_p},
         {"q": Rows("float64", ("num_links",)), "links": Rows("float64", ("num_links", "7")), "flange": Rows("float64", ("7",)), "tips": Rows("float64", ("num_fingers", "3")), "palm": Rows("float64", ("7",))}, True,
-        """For joints q [num_links], in the root frame: poses of the links to links [num_links]. *flange,
-        tips [num_fingers][3] and *palm (origin at hold_p, y into the palm, z as the fingers point) may
-        be NULL.
+        """Forward kinematics for joints q [num_links], in the root frame: writes the poses of the links to
+        links [num_links], of the flange to *flange, of the fingertips to tips [num_fingers][3] and of
+        the palm to *palm (origin at hold_p, y into the palm, z as the fingers point). flange, tips and
+        palm may be NULL.
         """),
     "rdm_robot_reach": Function(
         c_int32, {"robot": c_int32, "flange": c_void_p, "q": c_void_p, "found": c_void_p},
         {"flange": Rows("float64", ("7",)), "q": Rows("float64", ("num_links",))}, True,
-        """Joints q [num_links], from where they are, to where the arm's flange has the pose `flange` in the
-        root frame. *found is 0 when the least squares end elsewhere. UNSUPPORTED: no flange.
+        """Inverse kinematics: moves joints q [num_links], from where they are, to where the arm's flange
+        has the pose `flange` in the root frame. *found is 0 when the least squares end elsewhere.
+        UNSUPPORTED for a robot without a flange.
         """),
     "rdm_object_def_init": Function(
         c_int32, {"def": POINTER(rdm_object_def), "size": c_size_t},
@@ -5697,14 +5752,14 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_object_create": Function(
         c_int32, {"out": c_void_p, "def": POINTER(rdm_object_def)},
         {}, True,
-        """Adds an object under a number of its own, *out for rdm_object_info_at and what is here.
-        ARGUMENT, RANGE: the text names the row; a name that is taken is an ARGUMENT. Objects belong to
-        the process; any number of threads may look meanwhile.
+        """Adds an object and writes its number to *out, for rdm_object_info_at and the functions here.
+        ARGUMENT, RANGE: the text names the row; ARGUMENT for a name that is already used. Objects belong
+        to the process; any number of threads may read them meanwhile.
         """),
     "rdm_object_check": Function(
         c_int32, {"def": POINTER(rdm_object_def)},
         {}, True,
-        """What rdm_object_create would say of it, but for a name that is taken; adds nothing."""),
+        """Returns what rdm_object_create would, but for a name that is already used; adds nothing."""),
     "rdm_object_destroy": Function(
         c_int32, {"object": c_int32},
         {}, True,
@@ -5722,8 +5777,8 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_scene_user": Function(
         c_void_p, {"scene": c_void_p},
         {}, True,
-        """rdm_pool_config.user of the pool that is made, NULL where a task is asked about without a config
-        (rdm_task_at); NULL of a scene that is none.
+        """rdm_pool_config.user of the pool that is being made; NULL where there is no config (rdm_task_at),
+        and for an invalid scene.
         """),
     "rdm_scene_get_number": Function(
         c_int32, {"scene": c_void_p, "key": c_char_p, "value": c_void_p},
@@ -5759,8 +5814,8 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"scene": c_void_p, "a": c_char_p, "b": c_char_p, "law": POINTER(rdm_contact_law)},
         {}, True,
         """RANGE, ARGUMENT: the text names the field. Making the pool is UNSUPPORTED with engine=ode where a
-        law has more than a restitution. Fingertips feel the forces of such contacts, not their
-        torsional torques.
+        law has more than a restitution. Sensors of fingertips measure the forces of such contacts, not
+        their torsional torques.
         """),
     "rdm_scene_set_gravity": Function(
         c_int32, {"scene": c_void_p, "gravity": c_void_p},
@@ -5769,47 +5824,46 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_scene_set_feedforward": Function(
         c_int32, {"scene": c_void_p},
         {}, True,
-        """worlds take
+        """allows
         rdm_world_set_feedforward
         """),
     "rdm_scene_set_adjustable": Function(
         c_int32, {"scene": c_void_p},
         {}, True,
-        """worlds take
-        rdm_world_set_factors
-        """),
+        """allows rdm_world_set_factors"""),
     "rdm_scene_add_robot": Function(
         c_int32, {"scene": c_void_p, "robot": POINTER(rdm_scene_robot), "index": c_void_p},
         {}, True,
-        """index: NULL"""),
+        """index may be NULL"""),
     "rdm_scene_add_body": Function(
         c_int32, {"scene": c_void_p, "body": POINTER(rdm_body_def), "index": c_void_p},
         {}, True,
-        """index: NULL"""),
+        """index may be NULL"""),
     "rdm_scene_add_object": Function(
         c_int32, {"scene": c_void_p, "object": c_int32, "name": c_char_p, "pose": c_void_p, "scale": c_double, "index": c_void_p},
         {"pose": Rows("float64", ("7",))}, True,
-        """An object whose centre of mass has that pose, as the body and first shape `name` (others: name_1,
-        name_2 ...), `scale` times as large, 0.05 to 20, its mass as it is; index: NULL. Its material is
-        one of the scene: a new one rubs on each that is there with the object's friction, on another
-        object's with the lower of the two.
+        """Adds an object as a free body with its centre of mass at `pose`, `scale` times as large (0.05 to
+        20) and with the same mass; index may be NULL. The body and its first shape are called `name`,
+        further shapes name_1, name_2 ... The object's material is added to the scene if it is new: with
+        each material that is there it has the object's friction, with that of another object the lower
+        of the two.
         """),
     "rdm_scene_add_static": Function(
         c_int32, {"scene": c_void_p, "shape": POINTER(rdm_shape_def)},
         {}, True,
-        """stands still"""),
+        """a fixed shape"""),
     "rdm_scene_set_field": Function(
         c_int32, {"scene": c_void_p, "field": c_char_p, "count": c_size_t},
         {}, True,
-        """For a task whose numbers follow from its options: another count for a field, in the order of
-        rdm_task_def.fields; another count of actions, with hold [count] and mean [count] as in
+        """For a task whose sizes depend on its options: sets another count for a field, in the order of
+        rdm_task_def.fields; or another count of actions, with hold [count] and mean [count] as in
         rdm_task_def (NULL: 0).
         """),
     "rdm_scene_set_actions": Function(
         c_int32, {"scene": c_void_p, "count": c_size_t, "hold": c_void_p, "mean": c_void_p},
         {"hold": Rows("float32", ("count",)), "mean": Rows("float32", ("count",))}, True,
-        """For a task whose numbers follow from its options: another count for a field, in the order of
-        rdm_task_def.fields; another count of actions, with hold [count] and mean [count] as in
+        """For a task whose sizes depend on its options: sets another count for a field, in the order of
+        rdm_task_def.fields; or another count of actions, with hold [count] and mean [count] as in
         rdm_task_def (NULL: 0).
         """),
     "rdm_scene_find": Function(
@@ -5823,22 +5877,22 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_scene_add_touch": Function(
         c_int32, {"scene": c_void_p, "a": c_char_p, "b": c_char_p, "group": c_void_p},
         {}, True,
-        """group, for rdm_world_get_touch: all contacts of a shape of `a` with one of `b`, each the name of
-        a shape, body or robot, or a pattern of such names with '*' and '?'. NOT_FOUND where nothing has
-        it.
+        """Makes *group, for rdm_world_get_touch: all contacts of a shape of `a` with one of `b`; each is
+        the name of a shape, body or robot, or a pattern of such names with '*' and '?'. NOT_FOUND where
+        nothing matches.
         """),
     "rdm_world_number": Function(
         c_int32, {"world": c_void_p},
         {}, True,
-        """Which world of its pool it is, from 0 on; -1 in rdm_task_check's trials of one world alone, and
-        of a world that is none.
+        """The number of the world in its pool, from 0; -1 where rdm_task_check tries a world alone, and for
+        an invalid world.
         """),
     "rdm_world_user": Function(
         c_void_p, {"world": c_void_p},
         {}, True,
-        """rdm_pool_config.user of the world's pool: a pool keeps its own, whatever it takes of states and
-        of other pools. What it leads to is for what is outside of a world (a viewer, a log); what
-        happens within must not depend on it, nor on the number. NULL of a world that is none.
+        """rdm_pool_config.user of the world's pool, also after it read states or copied worlds of other
+        pools. It is for what is outside of the world (a viewer, a log): what happens in the world must
+        depend neither on it nor on the number. NULL for an invalid world.
         """),
     "rdm_world_get_joints": Function(
         c_int32, {"world": c_void_p, "io": POINTER(rdm_joints)},
@@ -5869,26 +5923,26 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_world_get_touch": Function(
         c_int32, {"world": c_void_p, "group": c_int32, "pairs": c_void_p, "force": c_void_p},
         {}, True,
-        """pairs is how many pairs of a group's shapes touched in the step; *force (N) the sum of the
+        """pairs is how many pairs of a group's shapes touched in the step, *force (N) the sum of the
         group's contact forces in its last substep. Either may be NULL.
         """),
     "rdm_world_get_contacts": Function(
         c_int32, {"world": c_void_p, "out": POINTER(rdm_contact), "capacity": c_size_t, "count": c_void_p},
         {}, True,
-        """Contacts of the last substep to out [capacity], of sleeping bodies as they were when they fell
-        asleep; *count is how many there are.
+        """Writes up to capacity contacts of the last substep to out [capacity]; *count is how many there
+        are. Contacts of sleeping bodies are those of the moment when they fell asleep.
         """),
     "rdm_world_get_overlap": Function(
         c_int32, {"world": c_void_p, "body": c_int32, "depth": c_void_p},
         {}, True,
-        """By *depth (m) a body at its present place is within something that it may touch; 0: it is
-        clear.
+        """Writes to *depth (m) how deep a body, where it is now, is inside something that it can touch; 0:
+        it is free.
         """),
     "rdm_world_set_body": Function(
         c_int32, {"world": c_void_p, "body": c_int32, "motion": POINTER(rdm_motion)},
         {}, True,
-        """Places for what moves freely; joints q [n] and velocities qd [n] (NULL: 0) of a robot of n
-        joints, within their ranges, and with them the targets of its drives.
+        """Place a free body or a free base; or set joints q [n] and velocities qd [n] (NULL: 0) of a robot
+        of n joints, within their ranges, and with them the targets of its drives.
         """),
     "rdm_world_set_base": Function(
         c_int32, {"world": c_void_p, "robot": c_int32, "motion": POINTER(rdm_motion)},
@@ -5901,54 +5955,55 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_world_set_targets": Function(
         c_int32, {"world": c_void_p, "first": c_int32, "targets": c_void_p, "n": c_size_t},
         {"targets": Rows("float64", ("n",))}, True,
-        """What drives go for: targets [n] (rad, m) of the joints from `first` on; or commands [n]
-        in [-1, 1] of all n commands of a robot, which become targets as its description says: ranges or
-        curves, no faster than its joints' velocity.
+        """Set the targets of drives: targets [n] (rad, m) of the joints from `first` on; or commands [n] in
+        [-1, 1], all n of a robot, which its description turns into targets (by ranges or curves, no
+        faster than its joints' velocity).
         """),
     "rdm_world_set_commands": Function(
         c_int32, {"world": c_void_p, "robot": c_int32, "commands": c_void_p, "n": c_size_t},
         {"commands": Rows("float64", ("n",))}, True,
-        """What drives go for: targets [n] (rad, m) of the joints from `first` on; or commands [n]
-        in [-1, 1] of all n commands of a robot, which become targets as its description says: ranges or
-        curves, no faster than its joints' velocity.
+        """Set the targets of drives: targets [n] (rad, m) of the joints from `first` on; or commands [n] in
+        [-1, 1], all n of a robot, which its description turns into targets (by ranges or curves, no
+        faster than its joints' velocity).
         """),
     "rdm_world_set_feedforward": Function(
         c_int32, {"world": c_void_p, "first": c_int32, "efforts": c_void_p, "n": c_size_t},
         {"efforts": Rows("float64", ("n",))}, True,
-        """Adds efforts [n] (N m, N) to the springs of the drives from `first` on, until they are set again;
-        STATE unless the scene has them. rdm_world_get_gravity gives those that hold a robot of n joints
-        against gravity where it is.
+        """Adds efforts [n] (N m, N) to those of the drives from `first` on, until they are set again; STATE
+        unless the scene allows it (rdm_scene_set_feedforward). rdm_world_get_gravity gives the efforts
+        that hold a robot of n joints against gravity where it is.
         """),
     "rdm_world_get_gravity": Function(
         c_int32, {"world": c_void_p, "robot": c_int32, "efforts": c_void_p, "n": c_size_t},
         {"efforts": Rows("float64", ("n",))}, True,
-        """Adds efforts [n] (N m, N) to the springs of the drives from `first` on, until they are set again;
-        STATE unless the scene has them. rdm_world_get_gravity gives those that hold a robot of n joints
-        against gravity where it is.
+        """Adds efforts [n] (N m, N) to those of the drives from `first` on, until they are set again; STATE
+        unless the scene allows it (rdm_scene_set_feedforward). rdm_world_get_gravity gives the efforts
+        that hold a robot of n joints against gravity where it is.
         """),
     "rdm_world_set_factors": Function(
         c_int32, {"world": c_void_p, "factors": POINTER(rdm_factor), "count": c_size_t},
         {}, True,
-        """Lays factors [count] over those that the world has, all 1 at the start of an episode; reset may
-        draw them. All are taken or none. STATE unless the scene is adjustable.
+        """Sets factors [count] of the world, and keeps its others; all are 1 at the start of an episode,
+        and reset may draw some. On an error none is set. STATE unless the scene allows it
+        (rdm_scene_set_adjustable).
         """),
     "rdm_world_push_body": Function(
         c_int32, {"world": c_void_p, "body": c_int32, "force": c_void_p, "torque": c_void_p},
         {"force": Rows("float64", ("3",)), "torque": Rows("float64", ("3",))}, True,
-        """Pushes during the next step, world axes: force [3] (N) at the centre of mass and torque [3] (N
-        m); of a link at `point` [3].
+        """Push a body, a base or a link during the next step: force [3] (N, world axes) at the centre of
+        mass, of a link at `point` [3] (m), and torque [3] (N m).
         """),
     "rdm_world_push_base": Function(
         c_int32, {"world": c_void_p, "robot": c_int32, "force": c_void_p, "torque": c_void_p},
         {"force": Rows("float64", ("3",)), "torque": Rows("float64", ("3",))}, True,
-        """Pushes during the next step, world axes: force [3] (N) at the centre of mass and torque [3] (N
-        m); of a link at `point` [3].
+        """Push a body, a base or a link during the next step: force [3] (N, world axes) at the centre of
+        mass, of a link at `point` [3] (m), and torque [3] (N m).
         """),
     "rdm_world_push_link": Function(
         c_int32, {"world": c_void_p, "link": c_int32, "force": c_void_p, "point": c_void_p},
         {"force": Rows("float64", ("3",)), "point": Rows("float64", ("3",))}, True,
-        """Pushes during the next step, world axes: force [3] (N) at the centre of mass and torque [3] (N
-        m); of a link at `point` [3].
+        """Push a body, a base or a link during the next step: force [3] (N, world axes) at the centre of
+        mass, of a link at `point` [3] (m), and torque [3] (N m).
         """),
     "rdm_world_get_many": Function(
         c_int32, {"worlds": POINTER(c_void_p), "n": c_size_t, "what": c_int32, "first": c_int32, "count": c_size_t, "x": c_void_p},
@@ -5969,7 +6024,7 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_random_bits": Function(
         c_uint64, {"random": POINTER(rdm_random)},
         {}, True,
-        """Draws from the stream; 0 without one. The same numbers on every machine."""),
+        """Draw from the stream; 0 if random is NULL. The same numbers on every machine."""),
     "rdm_random_uniform": Function(
         c_double, {"random": POINTER(rdm_random), "low": c_double, "high": c_double},
         {}, True,
@@ -5981,12 +6036,14 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_random_split": Function(
         c_int32, {"random": POINTER(rdm_random), "out": POINTER(rdm_random)},
         {}, True,
-        """Another stream to *out, for draws within an episode: reset makes it and keeps it in the state."""),
+        """Makes another stream *out for draws within an episode: call it in reset and keep the stream in
+        the state.
+        """),
     "rdm_rotation": Function(
         c_int32, {"axis": c_void_p, "angle": c_double, "q": c_void_p},
         {"axis": Rows("float64", ("3",)), "q": Rows("float64", ("4",))}, True,
-        """The turn by `angle` (rad) about the unit vector axis [3] to q [4]: the same bits on every
-        machine, where those of a C library's sine are not.
+        """Writes the rotation by `angle` (rad) about the unit vector axis [3] to q [4]: the same bits on
+        every machine, which those from a C library's sine are not.
         """),
     "rdm_task_def_init": Function(
         c_int32, {"def": POINTER(rdm_task_def), "size": c_size_t},
@@ -5995,9 +6052,9 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_task_create": Function(
         c_int32, {"out": c_void_p, "def": POINTER(rdm_task_def)},
         {}, True,
-        """Adds a task under a number of its own, *out for rdm_task_at and its like. ARGUMENT,
-        RANGE: the text names the row; a name that is taken is an ARGUMENT. Tasks belong to the process;
-        any number of threads may look meanwhile.
+        """Adds a task and writes its number to *out, for rdm_task_at and the like. ARGUMENT, RANGE: the
+        text names the row; ARGUMENT for a name that is already used. Tasks belong to the process; any
+        number of threads may read them meanwhile.
         """),
     "rdm_task_destroy": Function(
         c_int32, {"task": c_int32},
@@ -6006,13 +6063,13 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_task_check": Function(
         c_int32, {"task": c_char_p, "settings": c_char_p, "stop": rdm_stop, "user": c_void_p, "error": c_void_p, "error_size": c_size_t},
         {}, True,
-        """Tries what a task promises, any task: the same bytes for the same seed, any threads and after
-        save and restore, rows within their fields and bounds, costs of 0 or more, nothing written past a
-        state or a row, no memory left behind. OK, or the error of making a pool, or ARGUMENT: the text
-        names the function, the step and the entry where a promise broke first; it goes to
-        error [error_size] too, NULL: not. `settings` as in rdm_pool_config; NULL: none. Seconds: `stop`,
-        NULL: never, is asked before every step of its worlds, and given `user`; CANCELLED where it says
-        so, nothing is left behind.
+        """Tests what a task must promise, for any task: the same bytes for the same seed, with any number
+        of threads and after save and restore; rows within their fields and bounds; costs of 0 or more;
+        nothing written past a state or a row; no memory left behind. Returns OK, or the error of making
+        a pool, or ARGUMENT: the text names the function, the step and the entry of the first broken
+        promise, and is also written to error [error_size] (may be NULL). `settings` as in
+        rdm_pool_config; NULL: none. It takes seconds: `stop` (NULL: never) is called with `user` before
+        every step of its worlds, and ends it with CANCELLED; nothing is left behind then.
         """),
 }
 

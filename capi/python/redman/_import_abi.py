@@ -39,26 +39,27 @@ class NoteKind(enum.IntEnum, metaclass=Members):
 
 
 class rdm_import_config(Structure):
-    """how a file is read; a .robot file takes no root, roles, density or slide_range: ARGUMENT
+    """how a file is read; ARGUMENT for root, roles, density or slide_range with a .robot file
 
     struct_size: bytes, set by rdm_import_config_init
     format: RDM_IMPORT_*
     kind: RDM_ROBOT_*, -1: guessed; default -1
     skip_meshes: flag: meshes that cannot be read are dropped with a note, else refused
     name: of the robot, which then has no alias; NULL: the file's
-    folder: where the names of a text's meshes begin; NULL: that of the file, or none
+    folder: folder that the names of meshes in a text start from; NULL: that of the file, or none
     packages: folder that holds the folders of package://; NULL: searched above the file
-    root: link (body) whose subtree is taken, "world" for all of an MJCF file; NULL
+    root: link (body) whose subtree is read, "world" for all of an MJCF file; NULL: the whole tree, of an MJCF
+        file the only body of its world
     palm: link; NULL: guessed
     tips: links or sites, "a,b,c", one for each finger; NULL: guessed
     mount: link or site, or "x y z roll pitch yaw" in the root frame; NULL: guessed
     flange: link or site, "none"; NULL: guessed
-    error: [error_size] the text of a failing call that takes this config; NULL
-    error_size: bytes, terminator included; what is longer is cut
-    mend_inertia: flag: moments that break the triangle rule are raised with a note, else refused
-    density: kg/m3, of URDF links without <inertial>: what their <collision> weighs; 0: they weigh nothing;
-        above 0 with another format, where geoms say their own: ARGUMENT
-    slide_range: m to either side, of a joint that slides without an end; 0: 2 pi
+    error: [error_size] receives the text when a call that takes this config fails; NULL: not wanted
+    error_size: bytes, terminator included; a longer text is cut
+    mend_inertia: flag: moments that violate the triangle inequality are raised with a note, else refused
+    density: kg/m3, of the <collision> shapes of URDF links without <inertial>; 0: such links are massless.
+        ARGUMENT when above 0 with another format, where geoms have their own
+    slide_range: m to either side, range of a sliding joint without limits; 0: 2 pi
     """
 
     struct_size: int
@@ -103,7 +104,7 @@ class ImportNote(Record):
     """frozen layout; texts live as long as the handle
 
     kind: NoteKind
-    line: of the file, from 1; 0: of none
+    line: line of the file, from 1; 0: none
     text: one line, with the element and, in an included file, its name
     """
 
@@ -116,7 +117,7 @@ class rdm_import_note(Structure):
     """frozen layout; texts live as long as the handle
 
     kind: RDM_NOTE_*
-    line: of the file, from 1; 0: of none
+    line: line of the file, from 1; 0: none
     text: one line, with the element and, in an included file, its name
     """
 
@@ -148,9 +149,9 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"out": POINTER(c_void_p), "path": c_char_p, "c": POINTER(rdm_import_config)},
         {}, True,
         """Reads a file; c may be NULL for the defaults. NOT_FOUND, IO; FORMAT: malformed, with its line;
-        ARGUMENT, RANGE: a robot that cannot be, with line and element; UNSUPPORTED: an element that
-        would change the robot and is not read. What is no regular file is IO and never waited for. A
-        file and all that it includes or names cost at most 4096 files, 16 MB of text, 512 MB of meshes
+        ARGUMENT, RANGE: an impossible robot, with line and element; UNSUPPORTED: an element that would
+        change the robot and is not read. Anything but a regular file is IO and never waited for. A file
+        and all that it includes or names may take at most 4096 files, 16 MB of text, 512 MB of meshes
         (64 MB each), 250,000 elements, 400,000 attributes and 10 million steps of work: RANGE beyond.
         """),
     "rdm_import_read": Function(
@@ -160,7 +161,9 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_import_create_robot": Function(
         c_int32, {"out": POINTER(c_void_p), "robot": c_int32},
         {}, True,
-        """A robot that is there, the library's own too, as a handle that can be written."""),
+        """Makes a handle of an existing robot, such as one of the library's own, so that it can be
+        written.
+        """),
     "rdm_import_destroy": Function(
         None, {"i": c_void_p},
         {}, True,
@@ -172,7 +175,7 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_import_note_count": Function(
         c_int32, {"i": c_void_p},
         {}, True,
-        """0 for what is no handle"""),
+        """0 for anything but a handle"""),
     "rdm_import_note_at": Function(
         c_int32, {"i": c_void_p, "n": c_int32, "out": POINTER(rdm_import_note)},
         {}, True,
@@ -187,42 +190,41 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_import_write_robot": Function(
         c_int32, {"def": POINTER(rdm_robot_def), "text": c_void_p, "capacity": c_size_t, "size": c_void_p},
         {}, True,
-        """The robot as a .robot file, text [capacity]; read back it is the same to the last bit. ARGUMENT:
-        a row names none.
+        """The robot as a .robot file, text [capacity]; read back it is the same to the last bit. ARGUMENT
+        where a row refers to one that does not exist.
         """),
     "rdm_import_read_task_file": Function(
         c_int32, {"task": c_void_p, "path": c_char_p},
         {}, True,
-        """A task out of a .task file: its scene, observation, rewards and costs as text (TOML, 1:1 with
-        rdm_task_def and what rdm_scene_* takes, and lists of terms in the place of functions).
-        Registered under the name that it says; *task is for rdm_task_at and rdm_task_destroy. A world
-        with its default options was made, reset and stepped before. The codes of
-        rdm_import_read_file.
+        """Registers the task of a .task file: its scene, observation, rewards and costs as text (TOML, 1:1
+        with rdm_task_def and what rdm_scene_* takes, with lists of terms instead of functions). It gets
+        the name in the file; *task is for rdm_task_at and rdm_task_destroy. Before that, a world with
+        default options is made, reset and stepped. Errors are those of rdm_import_read_file.
         """),
     "rdm_import_read_task": Function(
         c_int32, {"task": c_void_p, "bytes": c_void_p, "size": c_size_t, "file": c_char_p},
         {}, True,
-        """The same for bytes [size]; `file` begins the texts of errors, NULL: nothing does."""),
+        """The same for bytes [size]; texts of errors begin with `file`; NULL: with nothing."""),
     "rdm_import_read_object_file": Function(
         c_int32, {"out": POINTER(c_void_p), "path": c_char_p},
         {}, True,
         """Objects: an .object file (TOML, 1:1 with rdm_object_def; rows [[shape]]) as a handle for the call
-        below, or bytes [size] of one, or an object that is there. FORMAT with the line; ARGUMENT, RANGE
-        as rdm_object_create.
+        below, or bytes [size] of one, or an existing object. FORMAT with the line; ARGUMENT, RANGE as
+        rdm_object_create.
         """),
     "rdm_import_read_object": Function(
         c_int32, {"out": POINTER(c_void_p), "bytes": c_void_p, "size": c_size_t},
         {}, True,
         """Objects: an .object file (TOML, 1:1 with rdm_object_def; rows [[shape]]) as a handle for the call
-        below, or bytes [size] of one, or an object that is there. FORMAT with the line; ARGUMENT, RANGE
-        as rdm_object_create.
+        below, or bytes [size] of one, or an existing object. FORMAT with the line; ARGUMENT, RANGE as
+        rdm_object_create.
         """),
     "rdm_import_create_object": Function(
         c_int32, {"out": POINTER(c_void_p), "object": c_int32},
         {}, True,
         """Objects: an .object file (TOML, 1:1 with rdm_object_def; rows [[shape]]) as a handle for the call
-        below, or bytes [size] of one, or an object that is there. FORMAT with the line; ARGUMENT, RANGE
-        as rdm_object_create.
+        below, or bytes [size] of one, or an existing object. FORMAT with the line; ARGUMENT, RANGE as
+        rdm_object_create.
         """),
     "rdm_import_get_object_def": Function(
         c_int32, {"i": c_void_p, "io": POINTER(rdm_object_def)},
