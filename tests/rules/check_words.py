@@ -41,6 +41,17 @@ WORDS = [
     (r"unless said|said otherwise|says otherwise", "unless noted, overrides", None),
     (r"to turn,", "to rotate", None),
     (r"mends?|mended|mending", "repairs, avoids", r"--mend-inertia"),
+    (r"in the place of|takes? the place of", "instead of, replaces", None),
+    (r"stands? over|laid over|lays? over|stands? on (those|this|all|everything)", "overrides, depends on", None),
+    (r"stands? still|stands? twice|is there twice", "is fixed, is at rest, occurs twice", None),
+    (r"what is no|cannot be one|of no use|aright", "anything but, is invalid, is useless, correctly", None),
+    (r"(goes|go|went) for", "target of a drive", None),
+    (r"spoils?|spoiled|spoilt", "corrupts", None),
+    (r"triangle rule", "triangle inequality", None),
+    (r"(simulation|learning) half|halves of the library", "a build without simulation, without learning", None),
+    (r"out of files|forth and back|nobody learned|gives way to", "from files, forward and backward, baseline", None),
+    (r"the handle is good|no error of the call", "the handle can still be used, the call does not fail", None),
+    (r"hears?|hastens?", "notices, speeds up", None),
 ]
 
 

@@ -135,7 +135,7 @@ grep -q 'ffast-math' err || say "-Ofast: $(cat err)"
 # names
 "$tool" export --policy tanh --c own.c --json > out && grep -q '"name":"hand_over_safe_finger"' out || say "$(cat out)"
 grep -q 'right.joint_position' own.c || say "the observation's fields are not said"
-grep -q 'object.position  m  (not seen)$' sees.c || say "what is not seen is not said"
+grep -q 'object.position  m  (not observed)$' sees.c || say "an entry that is not observed is not marked"
 grep -q 'goal.position  m$' sees.c || say "what is seen is not said"
 for bad in 1a a-b 'a b' '' _a a__b 'a;b' "$(printf '%064d' 0 | tr 0 a)" 'é'; do
   "$tool" export --policy tanh --c bad.c --name "$bad" > out 2> err

@@ -481,12 +481,11 @@ std::string head_text(const Network& network, const std::vector<Layer>& layers,
   shape += " -> " + std::to_string(network.action_dim);
   if (!fields.empty()) {
     const bool whole = std::all_of(fields.begin(), fields.end(), [](const ObsField& f) { return f.seen; });
-    out +=
-        format(" *\n * Observation: entries, field, unit%s\n",
-               whole ? "" : "; what stands where nothing is seen, as long as it is finite, changes nothing");
+    out += format(" *\n * Observation: entries, field, unit%s\n",
+                  whole ? "" : "; entries that are not observed may have any finite value");
     for (const ObsField& f : fields)
       out += format(" *   %4d ..%4d  %s  %s%s\n", f.offset, f.offset + f.count - 1, harmless(f.name).c_str(),
-                    replaced(f.unit, "*/", "").c_str(), f.seen ? "" : "  (not seen)");
+                    replaced(f.unit, "*/", "").c_str(), f.seen ? "" : "  (not observed)");
   }
   out = replaced(out, "TASK", *info.task ? harmless(info.task) : "its host");
   out = replaced(out, "VERSION", format("%u.%u.%u", v / 1000000, v / 1000 % 1000, v % 1000));
