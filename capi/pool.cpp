@@ -108,8 +108,7 @@ void fill_side(rdm_pool* p) {
     const rdm_field_info f = field_of(task, static_cast<int32_t>(i));
     p->fields[i] = {f.name, f.unit, f.offset, f.count};
   }
-  // only column 0 is limited unless the host says otherwise
-  for (int32_t i = 0; i < info.num_costs; ++i) p->cost_limits[i] = i == 0 ? info.costs[0].limit : -1;
+  for (int32_t i = 0; i < info.num_costs; ++i) p->cost_limits[i] = info.costs[i].limit;
 }
 
 HostHooks hooks_of(const rdm_pool_config* c) {

@@ -186,7 +186,7 @@ typedef struct rdm_pose {   /* frozen layout, 7 doubles: where one frame is in a
 /* ---- rows of tables that several groups share ------------------------------------------------ */
 typedef struct rdm_field {  /* frozen layout: consecutive entries of an observation */
   const char *name;         /* "right.joint_position"                                         */
-  const char *unit;         /* "rad", "m/s", "1" after scaling ...                            */
+  const char *unit;         /* what an entry of 1 is: "rad", "5 m/s", "1" for shares          */
   int32_t offset;           /* first entry                                                    */
   int32_t count;            /* entries                                                        */
 } rdm_field;
@@ -196,7 +196,7 @@ typedef struct rdm_field_info { /* what consecutive entries of an observation ar
   int32_t count;            /* entries                                                        */
   int32_t reserved;         /* 0                                                              */
   const char *name;         /* "right.joint_position"                                         */
-  const char *unit;         /* "rad", "m/s", "1" after scaling ...                            */
+  const char *unit;         /* what an entry of 1 is: "rad", "5 m/s", "1" for shares          */
   float low, high;          /* bounds of every entry; NaN: none                               */
 } rdm_field_info;
 typedef struct rdm_tensor {   /* frozen layout: a named block of parameters */

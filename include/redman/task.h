@@ -386,7 +386,7 @@ typedef struct rdm_task_def { /* a whole task; all but `user` is copied by rdm_t
   const char *name;        /* letters, digits, '_', '-', '.'; at most 40 */
   const char *summary;     /* one line; NULL: none */
   const rdm_field_def *fields;     /* [num_fields] of an observation, in order */
-  const rdm_cost_def *costs;       /* [num_costs] column 0 is the one that learners limit */
+  const rdm_cost_def *costs;       /* [num_costs] column 0 is the task's; learners keep limits */
   const rdm_option_def *options;   /* [num_options] rows, and defaults of its own for those that
                                     * every task has */
   const rdm_camera_def *cameras;   /* [num_cameras] NULL with num_cameras 0: one called "front",

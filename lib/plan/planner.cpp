@@ -101,7 +101,7 @@ void Planner::make_rollouts(const PlannerConfig& c) {
   cost_dim_ = pool.cost_dim();
   rule_.num_costs = cost_dim_;
   for (int32_t k = 0; k < cost_dim_; ++k) {
-    limit_[k] = c.cost_limits ? c.cost_limits[k] : k == 0 ? info.costs[0].limit : -1;
+    limit_[k] = c.cost_limits ? c.cost_limits[k] : info.costs[k].limit;
     if (std::isnan(limit_[k])) fail(Code::kArgument, "cost_limits: entry %d is not a number", k);
   }
 }

@@ -60,7 +60,7 @@ struct PlannerConfig {
   int32_t num_threads = 0;              // of the rollouts; 0: as many as the pool's
   uint64_t seed = 0;                    // of the noise
   const float* noise = nullptr;         // [action_dim] deviations; null: option noise
-  const double* cost_limits = nullptr;  // [cost_dim] of an episode, < 0: none; null: the task's on column 0
+  const double* cost_limits = nullptr;  // [cost_dim] of an episode, < 0: none; null: the task's
   const OptionInput* options = nullptr;
   int32_t num_options = 0;
   const char* settings = nullptr;

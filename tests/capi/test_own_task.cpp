@@ -93,6 +93,41 @@ TEST(OwnTask, IsFoundAndDescribed) {
   EXPECT_STREQ(given.text, "64");
 }
 
+TEST(OwnTask, LearnersAndPlannersKeepTheLimitOfEachCost) {
+  for (const double limit : {-1.0, 1e-3}) {
+    BallTask t("own_limits");
+    t.costs = {{"touch", "the paddle touches the ball", 1000}, {"speed", "of the ball", limit}};
+    t.bind();
+    const Registered made(t.def);
+    Rows rows("own_limits", 2);
+    rdm_agent_config c;
+    ASSERT_EQ(rdm_agent_config_init(&c, sizeof c), RDM_OK);
+    ASSERT_EQ(rdm_agent_config_for_pool(&c, rows.pool), RDM_OK) << rdm_last_error();
+    ASSERT_EQ(c.cost_dim, kBallCosts);
+    EXPECT_EQ(c.cost_limits[0], 1000);
+    EXPECT_EQ(c.cost_limits[1], limit);
+    c.algo = "ppo_lag";
+    rdm_agent* agent = nullptr;
+    ASSERT_EQ(rdm_agent_create(&agent, &c), RDM_OK) << rdm_last_error();
+    rdm_epoch e = RDM_INIT(rdm_epoch);
+    ASSERT_EQ(rdm_agent_rollout(agent, rows.pool, &e), RDM_OK) << rdm_last_error();
+    EXPECT_GT(e.cost[1], 1e-3);
+    EXPECT_EQ(e.multiplier[1] > 0, limit > 0);
+    rdm_agent_destroy(agent);
+    rdm_planner_config p;
+    ASSERT_EQ(rdm_planner_config_init(&p, sizeof p), RDM_OK);
+    p.pool = rows.pool;
+    p.settings = "samples=4\nhorizon=8\nknots=1";
+    rdm_planner* planner = nullptr;
+    ASSERT_EQ(rdm_planner_create(&planner, &p), RDM_OK) << rdm_last_error();
+    float action[kBallActions];
+    rdm_plan_info info = RDM_INIT(rdm_plan_info);
+    ASSERT_EQ(rdm_planner_act(planner, rows.pool, 0, action, &info), RDM_OK) << rdm_last_error();
+    EXPECT_EQ(info.feasible_share, limit > 0 ? 0 : 1);
+    rdm_planner_destroy(planner);
+  }
+}
+
 TEST(OwnTask, TheDescriptionIsCopied) {
   auto t = std::make_unique<BallTask>("own_copied");
   BallUser user;

@@ -634,7 +634,7 @@ class Field(Record):
     """frozen layout: consecutive entries of an observation
 
     name: "right.joint_position"
-    unit: "rad", "m/s", "1" after scaling ...
+    unit: what an entry of 1 is: "rad", "5 m/s", "1" for shares
     offset: first entry
     count: entries
     """
@@ -649,7 +649,7 @@ class rdm_field(Structure):
     """frozen layout: consecutive entries of an observation
 
     name: "right.joint_position"
-    unit: "rad", "m/s", "1" after scaling ...
+    unit: what an entry of 1 is: "rad", "5 m/s", "1" for shares
     offset: first entry
     count: entries
     """
@@ -672,7 +672,7 @@ class FieldInfo(Record):
     offset: first entry
     count: entries
     name: "right.joint_position"
-    unit: "rad", "m/s", "1" after scaling ...
+    unit: what an entry of 1 is: "rad", "5 m/s", "1" for shares
     low: bounds of every entry; NaN: none
     high: bounds of every entry; NaN: none
     """
@@ -693,7 +693,7 @@ class rdm_field_info(Structure):
     count: entries
     reserved: 0
     name: "right.joint_position"
-    unit: "rad", "m/s", "1" after scaling ...
+    unit: what an entry of 1 is: "rad", "5 m/s", "1" for shares
     low: bounds of every entry; NaN: none
     high: bounds of every entry; NaN: none
     """
@@ -2380,7 +2380,6 @@ class rdm_planner_config(Structure):
     seed: of the noise; default 0
     noise: [action_dim] standard deviation of each entry, 0 to 10, copied; NULL: option noise
     cost_limits: [cost_dim] limit on the sum of each cost over an episode, < 0: none, copied; NULL: the task's
-        on column 0
     policy: proposes plans: sample 0 of the first iteration is its rollout, the others add noise to that; must
         outlive the planner; NULL: none
     agent: its critic values the states at the horizon's end; must outlive the planner, and no other thread may
@@ -4081,7 +4080,7 @@ class rdm_task_def(Structure):
     name: letters, digits, '_', '-', '.'; at most 40
     summary: one line; NULL: none
     fields: [num_fields] of an observation, in order
-    costs: [num_costs] column 0 is the one that learners limit
+    costs: [num_costs] column 0 is the task's; learners keep limits
     options: [num_options] rows, and defaults of its own for those that every task has
     cameras: [num_cameras] NULL with num_cameras 0: one called "front", which looks at the origin
     defaults: [num_defaults] of agent options; NULL with num_defaults 0
