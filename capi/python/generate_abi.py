@@ -207,7 +207,7 @@ def shape_of_field(variable: Variable) -> tuple[str, ...]:
 def shape_of_argument(variable: Variable, doc: str) -> tuple[str, ...]:
     if variable.length:
         return (variable.length,)
-    match = re.search(rf"\b{variable.name} ?{SHAPE}", doc)
+    match = re.search(rf"\b{variable.name}\s?{SHAPE}", doc)
     dims = shape(match[1]) if match else ()
     return (*dims, "7") if variable.base == POSE else dims
 

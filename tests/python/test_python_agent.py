@@ -298,6 +298,41 @@ class OfAPool(unittest.TestCase):
         with self.assertRaisesRegex(redman.ArgumentError, "steps: 0 is not above 0"):
             agent.learn(0)
 
+    def test_costs_of_its_own_take_the_place_of_the_pools(self):
+        pool = redman.Pool(TASK, 8, seed=1, options={"action_repeat": 0})
+        at = pool.fields["right.joint_velocity"].slice
+        with redman.Agent(pool, seed=1, options={"horizon": 40}, costs=["fast", "late"], cost_limits={"fast": 0.5}) as agent:
+            self.assertEqual((agent.cost_dim, agent.cost_limits), (2, [0.5, None]))
+            self.assertEqual(agent.options["action_repeat"], pool.spec.action_repeat)  # one step of the pool a decision
+            pool.reset()
+            ended, total = [], np.zeros(8)
+            for _ in range(40):
+                pool.step(agent.act(pool.obs))
+                fast = (np.abs(pool.final_obs[:, at]) > 0.6).any(axis=1)
+                total += fast
+                done = pool.terminated | pool.truncated
+                ended.extend(total[done > 0])
+                total[done > 0] = 0
+                with self.assertRaisesRegex(redman.ArgumentError, r"cost: shape \(8,\) does not fit \(8, 2\), \[num_envs\]\[cost_dim\]"):
+                    agent.record(pool.reward, fast, pool.terminated, pool.truncated, pool.final_obs)
+                agent.record(pool.reward, np.stack([fast, 0 * fast], 1), pool.terminated, pool.truncated, pool.final_obs)
+            epoch = agent.update(pool.obs)
+            self.assertGreater(np.mean(ended), 0.5)
+            self.assertAlmostEqual(epoch.costs["fast"], np.mean(ended), places=5)
+            self.assertEqual((list(epoch.costs), epoch.costs["late"]), (["fast", "late"], 0))
+            self.assertGreater(epoch.multipliers["fast"], 0)
+            self.assertEqual(copy.deepcopy(agent).cost_limits, agent.cost_limits)
+            with self.assertRaises(redman.ArgumentError):
+                agent.rollout(pool)  # whose costs are others
+            self.assertEqual(redman.evaluate(agent.policy(), episodes=2, num_envs=2).episodes, 2)
+        self.assertEqual(redman.Agent(obs_dim=1, action_dim=1, costs=["a", "b"]).cost_dim, 2)
+        for said, told in (({"cost_dim": 2}, "cost_dim: .*costs="), ({"num_envs": 8}, "num_envs: a pool brings its own"),
+                           ({"costs": ["a"], "cost_dim": 2}, "cost_dim: 2, and costs names 1")):
+            with self.assertRaisesRegex(redman.ArgumentError, told):
+                redman.Agent(pool, **said)
+        with self.assertRaisesRegex(redman.UsageError, "a list of names"):
+            redman.Agent(pool, costs="fast")
+
     def test_options_that_are_live_change(self):
         agent, _, _ = trained()
         agent.set(learning_rate=1e-5)

@@ -4461,7 +4461,7 @@ FUNCTIONS: dict[str, Function] = {
         """),
     "rdm_policy_act": Function(
         c_int32, {"p": c_void_p, "obs": c_void_p, "rows": c_int32, "noise": c_void_p, "action": c_void_p, "scratch": c_void_p, "scratch_bytes": c_size_t},
-        {"obs": Rows("float32", ("rows", "obs_dim")), "action": Rows("float32", ("rows", "action_dim"))}, False,
+        {"obs": Rows("float32", ("rows", "obs_dim")), "noise": Rows("float32", ("rows", "action_dim")), "action": Rows("float32", ("rows", "action_dim"))}, False,
         """One decision, to be held for rdm_policy_info.action_repeat control steps (rdm_actor_act counts
         them): action [rows][action_dim] = clip(mean + std noise, -1, 1) for obs [rows][obs_dim]. noise
         [rows][action_dim] are standard normal numbers of the caller's; NULL: the mean. scratch
@@ -4880,7 +4880,7 @@ FUNCTIONS: dict[str, Function] = {
         """),
     "rdm_agent_put": Function(
         c_int32, {"a": c_void_p, "obs": c_void_p, "action": c_void_p, "t": POINTER(rdm_transition)},
-        {"action": Rows("float32", ("num_envs", "action_dim"))}, False,
+        {"obs": Rows("float32", ("num_envs", "obs_dim")), "action": Rows("float32", ("num_envs", "action_dim"))}, False,
         """Records a decision that was taken elsewhere, by a robot or in another process: obs
         [num_envs][obs_dim], action [num_envs][action_dim] as the policy of this epoch sampled it, not
         clipped (rdm_policy_sample), and what followed. It replaces an rdm_agent_act with RDM_ACT_SAMPLE
@@ -5368,7 +5368,7 @@ FUNCTIONS: dict[str, Function] = {
         """),
     "rdm_project": Function(
         c_int32, {"normals": c_void_p, "bounds": c_void_p, "count": c_size_t, "dim": c_size_t, "action": c_void_p, "nearest": c_void_p},
-        {"normals": Rows("float32", ("count", "dim")), "action": Rows("float32", ("dim",)), "nearest": Rows("float32", ("dim",))}, True,
+        {"normals": Rows("float32", ("count", "dim")), "bounds": Rows("float32", ("count",)), "action": Rows("float32", ("dim",)), "nearest": Rows("float32", ("dim",))}, True,
         """Writes to nearest [dim] the point in [-1, 1] with normals [count][dim] . nearest <= bounds
         [count] that is nearest to action [dim] in the Euclidean norm; the two may be the same array.
         Bounds whose normal has a single entry are met exactly, others up to the rounding of a float
@@ -6006,7 +6006,7 @@ FUNCTIONS: dict[str, Function] = {
         """),
     "rdm_world_get_many": Function(
         c_int32, {"worlds": POINTER(c_void_p), "n": c_size_t, "what": c_int32, "first": c_int32, "count": c_size_t, "x": c_void_p},
-        {}, True,
+        {"x": Rows("float64", ("n", "count", "width"))}, True,
         """The quantity `what` of items first to first + count - 1 of each of n worlds to (or from) x
         [n][count][width], width the doubles of one. What is set is what the function of one world sets,
         row by row: an error leaves the rows before it set. RANGE for items that the scene does not have,
@@ -6014,7 +6014,7 @@ FUNCTIONS: dict[str, Function] = {
         """),
     "rdm_world_set_many": Function(
         c_int32, {"worlds": POINTER(c_void_p), "n": c_size_t, "what": c_int32, "first": c_int32, "count": c_size_t, "x": c_void_p},
-        {}, True,
+        {"x": Rows("float64", ("n", "count", "width"))}, True,
         """The quantity `what` of items first to first + count - 1 of each of n worlds to (or from) x
         [n][count][width], width the doubles of one. What is set is what the function of one world sets,
         row by row: an error leaves the rows before it set. RANGE for items that the scene does not have,

@@ -97,9 +97,14 @@ class Agent(Taught, Hinted):
         agent.record(reward, cost, terminated, truncated, final_obs)
         epoch = agent.update(obs)                       # after option horizon such decisions
 
-    cost_limits: of column 0, of each column (None, or NaN in an array: no limit), or by the names of the pool's costs. A pool brings its
-    dimensions, its task's defaults for learners, start pose and limits; fields, {name: (offset, count)}, name the parts
-    of other rows for actor_obs and critic_obs. ranks: the agent of one process of several (redman.Ranks). One thread at a time; others wait.
+        agent = redman.Agent(pool, costs=["fast"], cost_limits=5)       # costs of your own, in place of the pool's
+        pool.step(agent.act(pool.obs))                  # a pool with options={"action_repeat": 0}: a step is a decision
+        agent.record(pool.reward, too_fast(pool.final_obs), pool.terminated, pool.truncated, pool.final_obs)
+
+    cost_limits: of column 0, of each column (None, or NaN in an array: no limit), or by the names of the costs. A pool brings its
+    dimensions, its task's defaults for learners, start pose and limits; costs, names of columns, replace its costs and
+    their limits. fields, {name: (offset, count)}, name the parts of other rows for actor_obs and critic_obs. ranks: the agent
+    of one process of several (redman.Ranks). One thread at a time; others wait.
     """
 
     _hints = {
@@ -112,24 +117,40 @@ class Agent(Taught, Hinted):
     @keywords(aliases={"cost_limit": "cost_limits", "num_threads": "threads"}, options=True)
     def __init__(self, pool: Optional[Pool] = None, algo: str = "ppo_lag", seed: int = 0, threads: int = 0,
                  options: Optional[Options] = None, cost_limits: CostLimits = None, *,
-                 obs_dim: Optional[int] = None, action_dim: Optional[int] = None, num_envs: int = 1,
-                 cost_dim: int = 1, task: str = "", control_dt: float = 0.0, max_steps: int = 0,
-                 layout_hash: int = 0, initial_mean: Any = None,
+                 obs_dim: Optional[int] = None, action_dim: Optional[int] = None, num_envs: Optional[int] = None,
+                 cost_dim: Optional[int] = None, costs: Optional[Sequence[str]] = None, task: str = "",
+                 control_dt: float = 0.0, max_steps: int = 0, layout_hash: int = 0, initial_mean: Any = None,
                  fields: Optional[Mapping[str, tuple[int, int]]] = None, ranks: Optional[Ranks] = None) -> None:
         own: dict[str, Any] = {"algo": algo, "seed": seed, "num_threads": threads, "options": dict(options or {}),
                                "ranks": ranks}
+        if isinstance(costs, str):
+            raise UsageError(f"costs: a list of names, [{costs!r}]")
+        columns: Sequence[str] = [] if costs is None else list(costs)
+        if costs is not None and cost_dim not in (None, len(columns)):
+            raise ArgumentError(f"cost_dim: {cost_dim}, and costs names {len(columns)}")
         if pool is not None:
-            if obs_dim is not None or action_dim is not None:
-                raise ArgumentError("agent: a pool brings its dimensions; give it or them")
+            brought = {"obs_dim": obs_dim, "action_dim": action_dim, "num_envs": num_envs, "task": task or None,
+                       "control_dt": control_dt or None, "max_steps": max_steps or None,
+                       "layout_hash": layout_hash or None, "fields": fields,
+                       "cost_dim": cost_dim if costs is None else None}
+            for name, value in brought.items():
+                if value is not None:
+                    instead = "; costs=[names] replaces its costs by your own" if name == "cost_dim" else ""
+                    raise ArgumentError(f"{name}: a pool brings its own{instead}")
             own.update(_config_of(pool))
-            columns: Sequence[str] = list(pool.costs)
+            if costs is None:
+                columns = list(pool.costs)
+            else:
+                own.update(cost_dim=len(columns), cost_limits=[-1.0] * len(columns))
         else:
             if obs_dim is None or action_dim is None:
                 raise ArgumentError("agent: give a pool, or obs_dim and action_dim")
-            own.update(obs_dim=obs_dim, action_dim=action_dim, num_envs=num_envs, cost_dim=cost_dim, task=task,
-                       control_dt=float(control_dt), max_steps=max_steps, layout_hash=layout_hash, initial_mean=None,
-                       defaults={}, cost_limits=None, fields=[(name, "", offset, count) for name, (offset, count) in (fields or {}).items()])
-            columns = [f"cost {k}" for k in range(cost_dim)]
+            if costs is None:
+                columns = [f"cost {k}" for k in range(1 if cost_dim is None else cost_dim)]
+            own.update(obs_dim=obs_dim, action_dim=action_dim, num_envs=1 if num_envs is None else num_envs,
+                       cost_dim=len(columns) if cost_dim is None else cost_dim, task=task, control_dt=float(control_dt),
+                       max_steps=max_steps, layout_hash=layout_hash, initial_mean=None, defaults={}, cost_limits=None,
+                       fields=[(name, "", offset, count) for name, (offset, count) in (fields or {}).items()])
         if initial_mean is not None:
             own["initial_mean"] = np.broadcast_to(np.asarray(initial_mean, np.float32), own["action_dim"]).copy()
         own["cost_names"] = list(columns)

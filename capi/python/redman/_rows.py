@@ -62,7 +62,8 @@ def given(value: Any, rows: Rows, lengths: Mapping[str, int], name: str, spread:
             except ValueError:
                 pass
         if array.shape != shape:
-            raise ArgumentError(f"{name}: shape {np.shape(value)} does not fit {shape}")
+            names = "".join(f"[{length}]" for length in rows.shape)
+            raise ArgumentError(f"{name}: shape {np.shape(value)} does not fit {shape}, {names}")
     return np.ascontiguousarray(array)
 
 
