@@ -43,8 +43,11 @@ new_root() {
     > "$roots/$name.log" 2>&1 || { tail -n5 "$roots/$name.log" >&2; die "apt could not install in $name: $roots/$name.log"; }
 }
 
+# With a /proc, by which a program finds what lies beside it; it goes with the command.
 in_root() {
-  chroot "$root" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 sh -ec "$1"
+  # shellcheck disable=SC2016
+  unshare --mount sh -ec 'mount -t proc proc "$1/proc"
+    exec chroot "$1" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C.UTF-8 sh -ec "$2"' in_root "$root" "$1"
 }
 
 # The first block of code in this language in a page.
