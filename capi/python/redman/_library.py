@@ -60,7 +60,7 @@ def policy_folders() -> list[Path]:
     here = Path(__file__).resolve().parent
     library = Path(lib._name)
     beside = library.resolve().parent.parent if library.is_absolute() else Path(sys.prefix)
-    places = [here / "policies"]
+    places = [here / "share" / "redman" / "policies"]  # where a wheel's tool looks too
     if len(here.parents) > 2 and (here.parents[2] / "include" / "redman" / "redman.h").is_file():
         places.append(here.parents[2] / "examples" / "policies")
     places += [prefix / "share" / "redman" / "policies"

@@ -1,9 +1,10 @@
-"""The command-line tool, for what it alone can do."""
+"""The command-line tool, for what it alone can do; and the commands `redman` and `python -m redman`, which are it."""
 from __future__ import annotations
 
 import os
-import shutil
+import signal
 import subprocess
+import sys
 from pathlib import Path
 from typing import Optional
 
@@ -13,22 +14,43 @@ from ._library import lib
 
 def tool_path() -> Optional[str]:
     """The tool: REDMAN_TOOL, beside this package or the library, or on PATH; None: there is none."""
-    named = os.environ.get("REDMAN_TOOL")
-    if named:
-        return named
+    return os.environ.get("REDMAN_TOOL") or _found()
+
+
+def _found() -> Optional[str]:
     here, library = Path(__file__).resolve().parent, Path(lib._name).absolute()
     places = [here / "bin", here, *([library.parent / "bin"] if os.path.dirname(lib._name) else [])]
-    for place in places:
-        if (place / "redman").is_file() and os.access(place / "redman", os.X_OK):
-            return str(place / "redman")
-    return shutil.which("redman")
+    tools = (place / "redman" for place in [*places, *map(Path, os.get_exec_path())])
+    return next((str(tool) for tool in tools if _is_tool(tool)), None)
+
+
+def _is_tool(path: Path) -> bool:
+    """Whether it is a program, and not the script by which pip starts main()."""
+    if not path.is_file() or not os.access(path, os.X_OK):
+        return False
+    try:
+        with path.open("rb") as file:
+            return b"redman._tool" not in file.read(4096)
+    except OSError:  # a program that may be run and not read
+        return True
+
+
+def main() -> None:
+    """Becomes the tool, with the arguments of this command. REDMAN_TOOL, which may name this very command, is not read."""
+    tool = _found()
+    if tool is None:
+        sys.exit("redman: there is no command-line tool in this package, beside its library or on PATH")
+    for name in ("SIGPIPE", "SIGXFSZ"):  # Python ignores them, and what it becomes would too
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), signal.SIG_DFL)
+    os.execv(tool, [tool, *sys.argv[1:]])
 
 
 def run_tool(*arguments: str, why: str) -> None:
     """Runs the tool; its words are those of the error."""
     tool = tool_path()
     if tool is None:
-        raise UnsupportedError(f"{why} is made by the command redman, which is not on PATH, nor where REDMAN_TOOL says")
+        raise UnsupportedError(f"{why} is made by the command redman, which is not in this package, not on PATH, nor where REDMAN_TOOL says")
     done = subprocess.run([tool, *arguments], capture_output=True, text=True, stdin=subprocess.DEVNULL)
     if done.returncode:
         said = (done.stderr.strip() or done.stdout.strip()).splitlines()
