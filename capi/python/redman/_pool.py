@@ -111,6 +111,8 @@ class Sensors:
     points: Optional[FloatArray]
     point_shape: Optional[npt.NDArray[np.int32]]
     point_count: Optional[npt.NDArray[np.int32]]
+    point_class: Optional[npt.NDArray[np.uint8]]
+    point_color: Optional[npt.NDArray[np.uint8]]
     voxels: Optional[npt.NDArray[np.int8]]
     voxel_size: float
     cameras: list[_discovery.Camera]  # of the pictures

@@ -92,13 +92,22 @@ class SceneBuilder:
         """The ground: everything below z = 0 of its pose is solid."""
         self.static("plane", (), name, pose, **more)
 
-    def robot(self, robot: RobotName, name: str, pose: Any = (0, 0, 0), **more: Any) -> int:
-        """A robot of redman.robots(), of a file, or redman.Robot.create; name begins the names of its links, joints and shapes.
-        More: material, base_damping, free_base, left, gravity."""
+    def robot(self, robot: Union[RobotName, Mapping[str, Any]], name: str, pose: Any = (0, 0, 0), **more: Any) -> int:
+        """A robot of redman.robots(), of a file, or redman.Robot.create; or a dict of what create takes, for this scene alone, as
+        a button is. name begins the names of its links, joints and shapes. More: material, base_damping, free_base, left,
+        gravity."""
         from ._robot import robot as robot_of
         row = sized(_abi.rdm_scene_robot)
         check(lib.rdm_scene_robot_init(byref(row), ctypes.sizeof(row)))
-        kept = fill(row, {"robot": robot_of(robot).number, "name": name, "pose": pose, **more}, f"robot {name}")
+        kept: list[Any] = []
+        if isinstance(robot, Mapping):
+            own = sized(_abi.rdm_robot_def)
+            check(lib.rdm_robot_def_init(byref(own), ctypes.sizeof(own)))
+            kept += fill(own, {"name": name, **robot}, f"robot {name}")
+            row.own = ctypes.pointer(own)
+        else:
+            row.robot = robot_of(robot).number
+        kept += fill(row, {"name": name, "pose": pose, **more}, f"robot {name}")
         out = self._added(lib.rdm_scene_add_robot, row)
         del kept
         return out
