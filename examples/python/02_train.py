@@ -2,7 +2,7 @@
 
     python3 02_train.py [steps]
 
-`train` gives the policy of the command `redman train`, to the byte. 300000 steps (10 s) are enough for a first throw.
+`train` gives the policy of the command `redman train`, to the byte. 300000 steps (8 s of one core) are enough for a first throw.
 """
 import sys
 import tempfile

@@ -7,6 +7,7 @@
 import sys
 
 import numpy as np
+
 try:
     import torch
     from torch import nn
@@ -16,17 +17,16 @@ except ModuleNotFoundError as missing:
 
 import redman
 
-steps, N, T = float(sys.argv[1]) if len(sys.argv) > 1 else 80_000, 64, 32
+steps, N, T = float(sys.argv[1]) if len(sys.argv) > 1 else 60_000, 16, 250
 torch.manual_seed(0)
 pool = redman.Pool("ball_run", num_envs=N, seed=0)
 pool.reset()
 limit, D, A = pool.costs["cost"].limit, pool.obs_dim, pool.action_dim
-rows = pool.obs, pool.final_obs, pool.action, pool.reward, pool.cost, pool.terminated, pool.truncated
-obs, final, action, reward, cost, terminated, truncated = map(torch.from_numpy, rows)
+views = pool.obs, pool.final_obs, pool.action, pool.reward, pool.cost, pool.terminated, pool.truncated
+obs, final, action, reward, cost, terminated, truncated = map(torch.from_numpy, views)
 actor, critic = (nn.Sequential(nn.Linear(D, 64), nn.Tanh(), nn.Linear(64, 64), nn.Tanh(), nn.Linear(64, n)) for n in (A, 2))
-log_std = nn.Parameter(torch.full((A,), -0.7))
+log_std, multiplier, episodes = nn.Parameter(torch.full((A,), -0.7)), 1.0, []
 adam = torch.optim.Adam([*actor.parameters(), *critic.parameters(), log_std], 1e-3)
-multiplier, returns, costs = 0.0, [0.0], [0.0]
 
 for _ in range(max(1, round(steps / (N * T)))):
     rows = []
@@ -36,24 +36,24 @@ for _ in range(max(1, round(steps / (N * T)))):
             drawn = normal.sample()
             action.copy_(drawn.clamp(-1, 1))        # writes pool.action
             pool.step()
-            gained, ended = torch.stack([reward, cost[:, 0]], 1), (terminated | truncated)[:, None]
+            gained, ended = torch.stack([0.1 * reward, cost[:, 0]], 1), (terminated | truncated)[:, None]
             target = gained + 0.99 * critic(final) * ~terminated[:, None]   # a truncated episode has a value beyond its end
             rows.append((seen, drawn, normal.log_prob(drawn).sum(1), target - critic(seen), ~ended, critic(seen)))
-        returns += pool.episode_return[ended[:, 0].numpy()].tolist()
-        costs += pool.episode_cost[ended[:, 0].numpy(), 0].tolist()
-    seen, drawn, log_prob, delta, goes_on, value = map(torch.stack, zip(*rows))
-    advantage = delta.clone()
+        episodes += np.c_[pool.episode_return, pool.episode_cost[:, 0]][ended[:, 0].numpy()].tolist()
+    seen, drawn, log_prob, advantage, goes_on, value = map(torch.stack, zip(*rows))
     for t in reversed(range(T - 1)):
         advantage[t] += 0.99 * 0.95 * goes_on[t] * advantage[t + 1]
-    multiplier = max(0.0, multiplier + 0.05 * (np.mean(costs[-50:]) - limit) / limit)
-    gain = advantage[..., 0] - multiplier * advantage[..., 1]
-    gain = (gain - gain.mean()) / (gain.std() + 1e-8)
+    ret, spent = np.mean(episodes[-N:], axis=0)
+    multiplier = max(0.0, multiplier + 0.2 * (spent - limit) / limit)
+    of_reward, of_cost = (advantage - advantage.mean((0, 1))).unbind(-1)
+    gain = (of_reward / of_reward.std() - multiplier * of_cost) / (1 + multiplier)
     flat = [x.flatten(0, 1) for x in (seen, drawn, log_prob, gain, advantage + value)]
-    for _ in range(4):
-        for part in torch.randperm(N * T).split(512):
+    for _ in range(10):
+        for part in torch.randperm(N * T).split(125):
             o, a, old, g, wanted = (x[part] for x in flat)
             ratio = (torch.distributions.Normal(actor(o), log_std.exp()).log_prob(a).sum(1) - old).exp()
-            loss = -torch.min(ratio * g, ratio.clamp(0.8, 1.2) * g).mean() + 0.005 * (critic(o) - wanted).pow(2).mean()
+            loss = -torch.min(ratio * g, ratio.clamp(0.8, 1.2) * g).mean() + (critic(o) - wanted).pow(2).mean()
             adam.zero_grad(), loss.backward(), adam.step()
-print(f"learning: return {np.mean(returns[-50:]):.1f}, cost {np.mean(costs[-50:]):.1f} of {limit}, multiplier {multiplier:.2f}")
-print(redman.evaluate(lambda o: actor(torch.from_numpy(o)).detach().numpy().clip(-1, 1), "ball_run", episodes=16))
+print(f"learning: return {ret:.1f}, cost {spent:.1f} of {limit}, multiplier {multiplier:.2f}")
+played = redman.evaluate(lambda o: actor(torch.from_numpy(o)).detach().numpy().clip(-1, 1), "ball_run", episodes=16)
+print(f"without noise: return {played.return_mean:.1f}, cost {played.cost_mean[0]:.1f}")

@@ -17,7 +17,7 @@ import redman.sb3
 steps, task = int(float(sys.argv[1])) if len(sys.argv) > 1 else 20_000, "ball_run"
 
 # action_repeat and center: the decisions of the task's own learner, about the pose that it starts from
-env = redman.sb3.VecEnv(task, 16, seed=1, action_repeat="task", center="initial", penalty=0.1)
+env = redman.sb3.VecEnv(task, 16, seed=1, action_repeat="task", center="initial", penalty=10)
 settings = {**redman.sb3.ppo_kwargs(task), "n_steps": 250, "batch_size": 500}
 model = PPO("MlpPolicy", env, seed=1, device="cpu", **settings)
 model.learn(steps, callback=redman.sb3.CostCallback())

@@ -15,10 +15,10 @@ except ModuleNotFoundError as missing:
 
 import redman.omnisafe
 
-steps, task = float(sys.argv[1]) if len(sys.argv) > 1 else 20_000, "ball_run"
+steps, task = float(sys.argv[1]) if len(sys.argv) > 1 else 8_000, "ball_run"
 
 settings = redman.omnisafe.configs(task, "PPOLag", steps=steps, num_envs=8)
-settings["logger_cfgs"] = {"use_wandb": False, "use_tensorboard": False, "log_dir": tempfile.mkdtemp(), "save_model_freq": 1}
+settings["logger_cfgs"] = {"use_wandb": False, "use_tensorboard": False, "log_dir": tempfile.mkdtemp(), "save_model_freq": 1000}
 agent = omnisafe.Agent("PPOLag", redman.omnisafe.env_id(task), custom_cfgs=settings)
 agent.learn()
 print(f"{agent.cfgs.train_cfgs.total_steps} decisions in {settings['train_cfgs']['vector_env_nums']} worlds")

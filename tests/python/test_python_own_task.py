@@ -170,6 +170,29 @@ class OwnTask(unittest.TestCase):
         self.assertTrue((pool.obs[:, pool.fields["mass"].slice] == np.float32(0.2)).all())
         self.assertTrue((np.abs(pool.obs[:, :2]) > 0.1).all())
 
+    def test_a_scene_has_a_robot_of_its_own(self):
+        cap = {"name": "cap", "joint": "spring", "parent": "root", "kind": "prismatic", "axis": [0, 0, 1], "lower": -0.01, "kp": 100,
+               "kd": 2, "effort": 2, "mass": 0.02, "moment": [1e-5, 1e-5, 1e-5, 0, 0, 0]}
+
+        class Button(PushBall):
+            name, button = "button", {"links": [cap], "shapes": [{"name": "top", "link": "cap", "kind": "sphere", "size": 0.01}]}
+
+            def scene(self, s):
+                s.robot(self.button, "first", pose=[1, 0, 0.3])
+                s.robot(self.button, "second", pose=[0, 1, 0.3])
+                super().scene(s)
+                self.springs = s.joints()
+
+        known = list(redman.robots())
+        pool = redman.Pool(Button)
+        self.assertEqual([joint.name for joint in pool.joints], ["first_spring", "second_spring"])
+        self.assertEqual(list(redman.robots()), known)  # it is none of the list
+        Button.unregister()
+        Button.name, Button.button = "button_wrong", {"links": [{**cap, "parent": "rooot"}]}
+        with self.assertRaisesRegex(redman.Error, r"Button\.scene raised .*robot first: links.*parent: 'rooot' is none of root"):
+            redman.Pool(Button)
+        Button.unregister()
+
     def test_what_it_promises_holds(self):
         redman.check_task(PushBall)
         redman.check_task(Gust)

@@ -256,7 +256,7 @@ class _Description:
                 self.kept.append(array)
         kinds: dict[str, Any] = {field[0]: field[1] for field in _abi.rdm_task_def._fields_}
         for member in ("build", "reset_many", "control_many", "judge_many", "observe_many"):
-            call = self._guarded(member.replace("_many", ""), getattr(self, "_" + member))
+            call = self._guarded("scene" if member == "build" else member.replace("_many", ""), getattr(self, "_" + member))
             function = kinds[member](call) if member == "build" else _MANY(call)
             setattr(d, member, ctypes.cast(function, kinds[member]))
             self.kept.append(function)
