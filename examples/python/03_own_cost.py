@@ -14,19 +14,19 @@ import redman
 steps = float(sys.argv[1]) if len(sys.argv) > 1 else 160_000
 TOP_SPEED, LIMIT = 2.0, 20  # m/s; steps of an episode
 
-pool = redman.Pool("ball_run", num_envs=64, seed=0)
+pool = redman.Pool("ball_run", num_envs=16, seed=0)
 pool.reset()
 # An agent of a pool has its sizes, names and defaults. Column 0 is what `cost_limits=LIMIT` limits: we replace it below.
-agent = redman.Agent(pool, algo="ppo_lag", seed=1, cost_limits=LIMIT, options={"horizon": 50})
+agent = redman.Agent(pool, algo="ppo_lag", seed=1, cost_limits=LIMIT)
 velocity = pool.fields["velocity"]
-scale = float(velocity.unit.split()[0])                     # "5 m/s": an entry of 1 is 5 m/s
+print(f"velocity: columns {velocity.slice.start} to {velocity.slice.stop - 1}, {velocity.scale} m/s for an entry of 1")
 
 epochs = max(1, round(steps / (pool.num_envs * agent.options["horizon"])))
 for epoch in range(epochs):
     for _ in range(agent.options["horizon"]):
-        action = agent.act(pool.obs)                        # samples; record must follow
+        action = agent.act(pool.obs)                        # samples, each for option action_repeat steps: 1 in this task
         pool.step(np.clip(action, -1, 1))
-        speed = scale * np.linalg.norm(pool.final_obs[:, velocity.slice], axis=1)
+        speed = velocity.scale * np.linalg.norm(pool.final_obs[:, velocity.slice], axis=1)
         cost = pool.cost.copy()
         cost[:, 0] = speed > TOP_SPEED                      # instead of the task's own
         agent.record(pool.reward, cost, pool.terminated, pool.truncated, pool.final_obs)
@@ -41,5 +41,5 @@ pool.reset()
 actor, fast = agent.policy().actor(pool), np.zeros(16)
 for _ in range(pool.max_steps):
     pool.step(actor())
-    fast += scale * np.linalg.norm(pool.final_obs[:, velocity.slice], axis=1) > TOP_SPEED
+    fast += velocity.scale * np.linalg.norm(pool.final_obs[:, velocity.slice], axis=1) > TOP_SPEED
 print(f"without noise: return {pool.episode_return.mean():.1f}, {fast.mean():.1f} steps above {TOP_SPEED} m/s")

@@ -171,8 +171,8 @@ class OwnTask(unittest.TestCase):
         self.assertTrue((np.abs(pool.obs[:, :2]) > 0.1).all())
 
     def test_a_scene_has_a_robot_of_its_own(self):
-        cap = {"name": "cap", "joint": "spring", "parent": "root", "kind": "prismatic", "axis": [0, 0, 1], "lower": -0.01, "kp": 100,
-               "kd": 2, "effort": 2, "mass": 0.02, "moment": [1e-5, 1e-5, 1e-5, 0, 0, 0]}
+        cap = {"name": "cap", "joint": "spring", "parent": "root", "kind": "prismatic", "axis": [0, 0, 1], "lower": -0.01,
+               "kp": 100, "kd": 2, "effort": 2, "mass": 0.02, "moment": [1e-5, 1e-5, 1e-5, 0, 0, 0]}
 
         class Button(PushBall):
             name, button = "button", {"links": [cap], "shapes": [{"name": "top", "link": "cap", "kind": "sphere", "size": 0.01}]}

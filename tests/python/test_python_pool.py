@@ -451,6 +451,18 @@ class Discovery(unittest.TestCase):
         self.assertEqual(task.defaults["action_repeat"], 4)
         self.assertEqual(redman.task("jenga").defaults["action_repeat"], 8)  # the last of two rows
 
+    def test_a_field_says_what_an_entry_of_1_is(self):
+        scales = {field.unit: field.scale for task in redman.tasks().values() for field in task.fields.values()}
+        for unit, scale in {"5 m/s": 5, "10 rad/s": 10, "0.1 N m": 0.1, "m": 1, "1": 1}.items():
+            self.assertEqual(scales.pop(unit), scale)
+        self.assertEqual([unit for unit, scale in scales.items() if np.isnan(scale)], ["2, 20 rad/s"])
+        pool = redman.Pool("ball_run")
+        pool.reset()
+        pool.step(np.ones((1, 2)))
+        velocity = pool.fields["velocity"]
+        speed = velocity.scale * np.linalg.norm(pool.obs[0, velocity.slice])
+        self.assertAlmostEqual(speed, pool.cost_raw[0, pool.cost_names.index("speed")], places=5)
+
     def test_algos_robots_objects(self):
         self.assertIn("clip", redman.algo("ppo_lag").options)
         egg = redman.objects()["egg"]

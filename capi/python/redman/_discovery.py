@@ -52,6 +52,17 @@ class Field(_abi.FieldInfo):
         """Its entries of a row."""
         return slice(self.offset, self.offset + self.count)
 
+    @property
+    def scale(self) -> float:
+        """What an entry of 1 is in SI units, as the unit says: 5 of "5 m/s", 1 of "m"; nan where its entries differ in that."""
+        number, _, rest = self.unit.partition(" ")
+        if not rest:
+            return 1.0
+        try:
+            return float(number)
+        except ValueError:  # "N m", or "2, 20 rad/s"
+            return float("nan") if "," in number else 1.0
+
 
 class Camera(_abi.CameraInfo):
     """A pinhole camera: its optical axis runs from eye to target, and meets the picture cx of its width to the right of
