@@ -63,6 +63,18 @@ second() {
   [ "$2" != cpo ] || echo "--set several_costs=worst"
 }
 
+# onward TASK: the flags of a run that goes on from its task's bundled policy: what that policy reads and was trained with.
+onward() {
+  echo "--from trained"
+  case $1 in
+    reorient)
+      local rows='right.joint_position,right.joint_velocity,object.*,right.action'
+      echo "--set actor_obs=$rows --set critic_obs=$rows --set turn_reward=20 --set reward_factor=0.02 --set action_repeat=3"
+      echo "--set horizon=24 --set passes=4 --set minibatches=8"
+      ;;
+  esac
+}
+
 wanted() { case " ${2:-$1} " in *" $1 "*) ;; *) return 1 ;; esac }
 
 # One line for each run: NAME PART TASK ALGO SEED STEPS FLAGS...
@@ -95,10 +107,10 @@ reported() {
 }
 
 run_one() {  # a row
-  local name=$1 part=$2 task=$3 algo=$4 seed=$5 n=$6
+  local name=$1 part=$2 task=$3 algo=$4 seed=$5 n=$6 more
   shift 6
   # the paper's Table 1 fits costs of commanded targets alone: tasks/costs.md
-  case $part in command) set -- "$@" --set cost_mode=command ;; shield) set -- "$@" --from trained ;; esac
+  case $part in command) set -- "$@" --set cost_mode=command ;; shield) read -r -a more <<< "$(onward "$task" | xargs)" && set -- "$@" "${more[@]}" ;; esac
   # a penalty teaches the network what the projection would do for it
   case $algo in *+predict) set -- "$@" --shield predict ;; *+project) set -- "$@" --shield project --set shield_penalty=0.1 ;; esac
   if trained "$out/$name" --task "$task" --algo "${algo%%+*}" --seed "$seed" --steps "$n" --no-tensorboard "$@" &&
