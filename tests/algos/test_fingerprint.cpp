@@ -67,7 +67,7 @@ TEST(Fingerprint, TheFieldThatDiffersIsNamed) {
   s = base();
   expect_refused(s.with("hidden", "32"), "option hidden is '32' in it, but '64,64' in this agent");
   s = base();
-  expect_refused(s.with("passes", "3"), "option passes is 3 there, 10 in this agent");
+  expect_refused(s.with("passes", "3"), "option passes is 3 in it, but 10 in this agent");
 }
 
 TEST(Fingerprint, LiveOptionsAreTakenOver) {

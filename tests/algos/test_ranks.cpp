@@ -295,7 +295,7 @@ TEST(Ranks, ADriftNamesItsRank) {
     });
     for (const Thrown& t : heard) {
       EXPECT_EQ(t.code, Code::kState);
-      EXPECT_EQ(t.text.find("ranks: rank " + std::to_string(drifter) + " has drifted"), 0u) << t.text;
+      EXPECT_EQ(t.text.find("ranks: rank " + std::to_string(drifter) + " has other weights"), 0u) << t.text;
     }
   }
 }

@@ -156,7 +156,7 @@ TEST(ContractRecording, FilesAndNumpy) {
   EXPECT_EQ(info_of(third.r).fingerprint, info_of(o.r).fingerprint);
   EXPECT_EQ(info_of(third.r).num_states, 12);
   EXPECT_EQ(rdm_recording_read_file(&none, path.c_str()), RDM_ERROR_FORMAT);
-  EXPECT_NE(std::string(rdm_last_error()).find("packed"), std::string::npos) << rdm_last_error();
+  EXPECT_NE(std::string(rdm_last_error()).find("compressed"), std::string::npos) << rdm_last_error();
 }
 
 // A share of 0, and no states, change nothing; other draws stay with any.

@@ -108,9 +108,9 @@ TEST_P(CreateIn, TakesTheBytesThatWereAskedForAndNoMore) {
     rdm_pool* p = nullptr;
     EXPECT_EQ(rdm_pool_create_in(&p, &config, lent.data(), bytes - 1), RDM_ERROR_RANGE);
     EXPECT_EQ(p, nullptr);
-    EXPECT_STREQ(
-        rdm_last_error(),
-        ("bytes: " + std::to_string(bytes - 1) + ", " + std::to_string(bytes) + " are needed").c_str());
+    EXPECT_STREQ(rdm_last_error(), ("bytes: " + std::to_string(bytes - 1) + " are too few, " +
+                                    std::to_string(bytes) + " are needed")
+                                       .c_str());
     ASSERT_EQ(rdm_pool_create_in(&p, &config, lent.data(), bytes), RDM_OK) << rdm_last_error();
     const rdm_pool* const first = p;
     EXPECT_EQ(play(p), plain) << off;
@@ -166,7 +166,7 @@ TEST(CreateInAny, SizeThatIsTooSmallIsToldAndLeavesNothing) {
   rdm_pool_config c = pool_config(2);
   size_t bytes = 0, last = 0;
   ASSERT_EQ(rdm_pool_config_memory(&c, &bytes, nullptr), RDM_OK);
-  const std::string needed = ", " + std::to_string(bytes) + " are needed";
+  const std::string needed = " are too few, " + std::to_string(bytes) + " are needed";
   Lent lent(bytes, 0);
   const int64_t live = heap_blocks();
   for (size_t given = 0; given < bytes; given += 2999, last = given) {

@@ -208,7 +208,7 @@ TEST_P(Joints, WhatNoWorldHasIsRefused) {
   EXPECT_EQ(rdm_pool_get_joints(pool.p, -1, q.data(), nullptr, n), RDM_ERROR_RANGE);
   EXPECT_EQ(rdm_pool_get_joints(pool.p, 0, q.data(), nullptr, n + 1), RDM_ERROR_RANGE);
   EXPECT_EQ(rdm_last_error(),
-            "count: " + std::to_string(n + 1) + ", the pool has " + std::to_string(n) + " joints");
+            "count: it is " + std::to_string(n + 1) + ", but the pool has " + std::to_string(n) + " joints");
   EXPECT_EQ(rdm_pool_set_joints(pool.p, 2, q.data(), nullptr, n), RDM_ERROR_RANGE);
   EXPECT_EQ(rdm_pool_set_joints(pool.p, 0, q.data(), nullptr, n + 1), RDM_ERROR_RANGE);
   const uint64_t before = hash_of(pool.p, 0);

@@ -213,7 +213,7 @@ TEST(Objects, RefusalsNameTheRow) {
   refused(RDM_ERROR_ARGUMENT, "shapes[1].points is NULL",
           [](auto&, auto* s) { s[1].kind = RDM_SHAPE_HULL, s[1].num_points = 8; });
   refused(RDM_ERROR_ARGUMENT, "place is not finite", [&](auto&, auto* s) { s[0].pose.p[1] = nan; });
-  refused(RDM_ERROR_ARGUMENT, "triangle rule",
+  refused(RDM_ERROR_ARGUMENT, "triangle inequality",
           [](auto& d, auto*) { d.moment[0] = d.moment[1] = 1e-4, d.moment[2] = 3e-4; });
   int32_t object = -1;
   const rdm_object_def d = default_def();

@@ -456,7 +456,7 @@ TEST(OwnTaskErrors, HandlesOutsideOfTheirCall) {
     late = rdm_scene_find(kept, RDM_SCENE_BODY, "ball", &i);
     EXPECT_EQ(rdm_scene_find(reinterpret_cast<rdm_scene*>(w), RDM_SCENE_BODY, "ball", &i),
               RDM_ERROR_ARGUMENT);
-    EXPECT_NE(std::strstr(rdm_last_error(), "of kind world"), nullptr);
+    EXPECT_NE(std::strstr(rdm_last_error(), "a handle of another kind, world"), nullptr);
     return static_cast<rdm_result>(RDM_OK);
   };
   EXPECT_EQ(try_task(&script), RDM_OK) << rdm_last_error();

@@ -128,7 +128,7 @@ TEST(RedmanHpp, PoolShowsAndSetsJoints) {
       pool.set_joints(1, given_q, given_qd);
     } catch (const redman::Error& e) {
       EXPECT_EQ(e.code(), RDM_ERROR_RANGE);
-      EXPECT_NE(std::strstr(e.what(), "count: 1, "), nullptr) << e.what();
+      EXPECT_NE(std::strstr(e.what(), "count: it is 1, "), nullptr) << e.what();
     }
   EXPECT_THROW(pool.joint(48), redman::Error);
 }

@@ -420,8 +420,8 @@ TEST(ShieldRefusals, OfPlans) {
   EXPECT_GT(size, plan.size());
   refused(drawn, 10, RDM_ERROR_UNSUPPORTED, "copies=2");
   refused(bare, 10, RDM_ERROR_STATE, "ends before the episode");
-  refused(shield, 0, RDM_ERROR_RANGE, "0 decisions");
-  refused(shield, 1000, RDM_ERROR_RANGE, "1000 decisions");
+  refused(shield, 0, RDM_ERROR_RANGE, "decisions, 0,");
+  refused(shield, 1000, RDM_ERROR_RANGE, "decisions, 1000,");
   EXPECT_EQ(rdm_shield_set_plan(shield.get(), pool.get(), 2, plan.data(), 10), RDM_ERROR_RANGE);
   EXPECT_EQ(rdm_shield_set_plan(shield.get(), pool.get(), 1, nullptr, 10), RDM_ERROR_ARGUMENT);
   plan[3] = std::numeric_limits<float>::infinity();

@@ -104,7 +104,7 @@ TEST(Import, RolesAreGuessedAndListed) {
   EXPECT_NEAR(d.palm_normal[1], -1, 1e-9);
   EXPECT_NEAR(d.palm_fingers[2], 1, 1e-9);
   EXPECT_EQ(d.mirror, 0);
-  EXPECT_TRUE(i.has_note(RDM_NOTE_GUESSED, "finger thumb, the thumb: thumb_proximal to thumb_distal"));
+  EXPECT_TRUE(i.has_note(RDM_NOTE_GUESSED, "finger thumb, the thumb: from thumb_proximal to thumb_distal"));
   EXPECT_TRUE(i.has_note(RDM_NOTE_GUESSED, "palm: the root"));
   // And said by options.
   rdm_import_config o = import_config();
@@ -205,7 +205,7 @@ TEST(Import, MjcfDrivesAndCouplings) {
        {"line 24: freejoint", "line 9: geom: solimp=\"0.9 0.95 0.001\"", "line 4: option", "line 21: light",
         "line 22: geom", "line 22: sensor (in hand_drives.xml)", "line 36: site index_tip"})
     EXPECT_TRUE(i.has_note(RDM_NOTE_DROPPED, text)) << text;
-  EXPECT_TRUE(i.has_note(RDM_NOTE_DROPPED, "line 27: geom: seen alone"));
+  EXPECT_TRUE(i.has_note(RDM_NOTE_DROPPED, "line 27: geom: only visual"));
 }
 
 TEST(Import, GrippersHaveRailsOffsetsAndMeshes) {
@@ -216,7 +216,7 @@ TEST(Import, GrippersHaveRailsOffsetsAndMeshes) {
   const rdm_robot_link& head = d.links[0];
   EXPECT_DOUBLE_EQ(head.lower, -2 * M_PI);
   EXPECT_DOUBLE_EQ(head.axis[2], 1);
-  EXPECT_TRUE(i.has_note(RDM_NOTE_CHANGED, "line 9: joint turn turns without end"));
+  EXPECT_TRUE(i.has_note(RDM_NOTE_CHANGED, "line 9: joint turn turns without limits"));
   // The camera is a part of it: two masses of 0.5 kg, 0.1 m apart, the second turned by a quarter.
   EXPECT_DOUBLE_EQ(head.mass, 1);
   EXPECT_NEAR(head.com[1], 0.05, 1e-12);
@@ -439,7 +439,8 @@ TEST(Refusals, Urdf) {
        {"<mass value=\"0.02\"", "<mass value=\"nan\"", RDM_ERROR_FORMAT,
         "line 26: mass: value: nan is not a number"},
        {"izz=\"1e-6\"", "izz=\"7e-6\"", RDM_ERROR_ARGUMENT,
-        "line 26: inertia: link index_proximal: the principal moments of inertia 3e-06, 3e-06, 7e-06 break "
+        "line 26: inertia: link index_proximal: the principal moments of inertia 3e-06, 3e-06, 7e-06  "
+        "violate "
         "the triangle inequality"},
        {"ixx=\"3e-6\"", "ixx=\"-3e-6\"", RDM_ERROR_ARGUMENT,
         "line 26: inertia: link index_proximal: the principal moments of inertia -3e-06"},
@@ -461,7 +462,7 @@ TEST(Refusals, Urdf) {
        {"<box size=\"0.09 0.03 0.1\"/>", "<box size=\"0.09 0 0.1\"/>", RDM_ERROR_RANGE,
         "line 14: box: link palm: size 0 is not above 0"},
        {"<box size=\"0.09 0.03 0.1\"/>", "<cone size=\"1\"/>", RDM_ERROR_UNSUPPORTED,
-        "line 14: geometry: link palm: neither box"},
+        "line 14: geometry: link palm: its geometry must be a box"},
        {"type=\"revolute\"", "type=\"planar\"", RDM_ERROR_UNSUPPORTED,
         "line 17: joint index_bend: type planar"},
        {"<axis xyz=\"1 0 0\"/>", "<axis xyz=\"0 0 0\"/>", RDM_ERROR_ARGUMENT,
@@ -477,7 +478,7 @@ TEST(Refusals, Urdf) {
        {"<inertial><origin xyz=\"0 0 0.012\"/><mass value=\"0.01\"/><inertia ixx=\"1e-6\" iyy=\"1e-6\" "
         "izz=\"5e-7\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial>",
         "", RDM_ERROR_RANGE, "line 39: link index_distal: it moves, but has no mass"},
-       {"</robot>", "", RDM_ERROR_FORMAT, "no XML"},
+       {"</robot>", "", RDM_ERROR_FORMAT, "this is not XML"},
        {"<robot name=\"plain_hand\">", "<robot name=\"plain_hand\"><xacro:arg name=\"x\"/>",
         RDM_ERROR_UNSUPPORTED, "line 3: xacro:arg x: xacro is not read"}});
 }
@@ -489,7 +490,8 @@ TEST(Refusals, Mjcf) {
       {{"mass=\"0.02\"", "mass=\"0\"", RDM_ERROR_RANGE,
         "line 29: inertial: body index_proximal: the mass 0 is not above 0"},
        {"diaginertia=\"3e-6 3e-6 1e-6\"", "diaginertia=\"3e-6 3e-6 7e-6\"", RDM_ERROR_ARGUMENT,
-        "line 29: inertial: body index_proximal: the principal moments of inertia 3e-06, 3e-06, 7e-06 break "
+        "line 29: inertial: body index_proximal: the principal moments of inertia 3e-06, 3e-06, 7e-06 "
+        "violate "
         "the triangle inequality"},
        {"name=\"index_bend\" class=\"bend\"", "name=\"index_bend\" class=\"bent\"", RDM_ERROR_NOT_FOUND,
         "line 30: joint index_bend: there is no class bent; nearest is bend"},

@@ -100,7 +100,7 @@ TEST(Mjcf, RangesHoldWhereTheySaySo) {
     const Import i = from_text(file(arm(kRod, r.joint), r.compiler));
     EXPECT_DOUBLE_EQ(i.def.links[0].lower, r.lower);
     EXPECT_DOUBLE_EQ(i.def.links[0].upper, r.upper);
-    EXPECT_EQ(i.has_note(RDM_NOTE_CHANGED, "without end"), r.upper > 6);
+    EXPECT_EQ(i.has_note(RDM_NOTE_CHANGED, "without limits"), r.upper > 6);
   }
   expect_refused(file(arm(kRod, "range='-90 90'"), "<compiler autolimits='false'/>"), RDM_ERROR_FORMAT,
                  "joint j: it has a range but no limited, and autolimits is false");
@@ -345,7 +345,7 @@ TEST(Mjcf, MassesOfMeshesThatAreNotThereAreRefused) {
                  "mesh m: builtin=\"cone\": shapes that MuJoCo generates are not read");
   expect_refused(file(arm("<geom type='mesh' mesh='m'/>"),
                       "<asset><mesh name='m' vertex='0 0 0 1 0 0 0 1 0 1 1 0'/></asset>"),
-                 RDM_ERROR_RANGE, "mesh m encloses nothing");
+                 RDM_ERROR_RANGE, "mesh m does not enclose a volume");
 }
 
 TEST(Mjcf, BoxesBetweenTwoEndsAreAsWideAsThick) {
@@ -368,7 +368,7 @@ TEST(Mjcf, OnlyNarrowLimitsOfTendonsCouple) {
     EXPECT_EQ(i.def.num_couplings, 0) << free;
   }
   EXPECT_TRUE(from_text(chain(2, tendon("-.3 .3", "1", "-1")))
-                  .has_note(RDM_NOTE_DROPPED, "tendon t: its range [-0.3, 0.3] is not taken"));
+                  .has_note(RDM_NOTE_DROPPED, "tendon t: its range [-0.3, 0.3] is dropped"));
   // The coupler and two soft limits on the same joints, as shared hands have them.
   const std::string one = tendon("-.001 .001", ".00705", "-.00805");
   std::string three = one;

@@ -89,14 +89,14 @@ TEST(ObjectText, RefusalsNameTheLine) {
     std::string file;
   } rows[] = {
       {RDM_ERROR_FORMAT, "line 1: name is missing", "mass = 1\n" + shape},
-      {RDM_ERROR_FORMAT, "no mass", "name = 'brick'\n" + shape},
+      {RDM_ERROR_FORMAT, "mass is missing", "name = 'brick'\n" + shape},
       {RDM_ERROR_FORMAT, "there is no [[shape]]", head},
       {RDM_ERROR_FORMAT, "line 3: weight is not a known key", head + "weight = 1\n" + shape},
       {RDM_ERROR_FORMAT, "line 2: mass is not a number", "name = 'brick'\nmass = '1'\n" + shape},
       {RDM_ERROR_FORMAT, "line 3: moment is not a list of 6 numbers", head + "moment = [1, 2]\n" + shape},
       {RDM_ERROR_VERSION_MISMATCH, "line 3: format", head + "format = 2\n" + shape},
       {RDM_ERROR_FORMAT, "line 4: shape: kind: bocks is unknown", head + "[[shape]]\nkind = 'bocks'\n"},
-      {RDM_ERROR_FORMAT, "no size", head + "[[shape]]\nkind = 'box'\n"},
+      {RDM_ERROR_FORMAT, "size is missing", head + "[[shape]]\nkind = 'box'\n"},
       {RDM_ERROR_FORMAT, "points is not a list of 4 to 32 points",
        head + "[[shape]]\nkind = 'hull'\npoints = [[0,0,0]]\n"},
       {RDM_ERROR_FORMAT, "a point is not a list of 3 numbers",
@@ -113,7 +113,7 @@ TEST(ObjectText, RefusalsNameTheLine) {
       {RDM_ERROR_ARGUMENT, "shapes[0]: kind 4", head + "[[shape]]\nkind = 'plane'\nsize = [1]\n"},
       {RDM_ERROR_RANGE, "object brick: shapes[0]: size",
        head + "[[shape]]\nkind = 'box'\nsize = [1, 1, 0]\n"},
-      {RDM_ERROR_ARGUMENT, "triangle rule", head + "moment = [1, 1, 3, 0, 0, 0]\n" + shape},
+      {RDM_ERROR_ARGUMENT, "triangle inequality", head + "moment = [1, 1, 3, 0, 0, 0]\n" + shape},
   };
   for (const auto& row : rows) {
     rdm_import* i = nullptr;

@@ -486,13 +486,13 @@ TEST(TaskText, BodiesWithARangeAreBounded) {
 
 TEST(TaskText, TermRefusals) {
   for (const auto& [row, text] : std::map<std::string, std::string>{
-           {"term = \"distance\"\na = \"ball\"\n", "no b"},
+           {"term = \"distance\"\na = \"ball\"\n", "b is missing"},
            {"term = \"distance\"\na = \"bal\"\nb = \"cart\"\n",
             "a: there is no body, robot, link or shape bal; nearest is ball"},
-           {"term = \"constant\"\ncurve = \"near\"\n", "no width"},
+           {"term = \"constant\"\ncurve = \"near\"\n", "width is missing"},
            {"term = \"constant\"\ncurve = \"near\"\nwidth = 0\n", "width: 0 is not above 0"},
            {"term = \"constant\"\nwidth = 1\n", "width: only the curves near and bell have one"},
-           {"term = \"constant\"\ncurve = \"above\"\n", "no at"},
+           {"term = \"constant\"\ncurve = \"above\"\n", "at is missing"},
            {"term = \"overlap\"\na = \"ball\"\n", "overlap cannot be observed"},
            {"term = \"joint\"\njoint = \"cart_slid\"\n", "nearest is cart_slide"},
            {"term = \"joint\"\njoint = \"cart_slide\"\nfrom = 1\n", "from and to are equal"},

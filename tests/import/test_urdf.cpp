@@ -100,9 +100,10 @@ TEST(Urdf, ElementsInTheWrongPlaceAreRefused) {
 TEST(Urdf, SecondOnesAreRefusedUnlessTheySayTheSame) {
   expect_refused(with_joint(kOrigin + "<origin xyz='0 0 0.2'/>" + kLimit), RDM_ERROR_FORMAT,
                  "origin: there is already one in line 1");
-  expect_refused(with_joint("<child link='base'/>" + kLimit), RDM_ERROR_FORMAT, "child: a second one");
+  expect_refused(with_joint("<child link='base'/>" + kLimit), RDM_ERROR_FORMAT,
+                 "child: there is already one");
   expect_refused(with_joint("<dynamics damping='1'/><dynamics damping='2'/>" + kLimit), RDM_ERROR_FORMAT,
-                 "dynamics: a second one");
+                 "dynamics: there is already one");
 }
 
 // As in fingers of TriFinger Pro, whose tips have that of the simulation and that of the drawing.
@@ -115,7 +116,7 @@ TEST(Urdf, OfTwoInertialsTheFirstCounts) {
                          "link arm: its second inertial was ignored, as in ROS; the one of line 1 counts"));
   EXPECT_EQ(from_text(with_arm(other + kInertial)).def.links[0].mass, 0.6);
   EXPECT_EQ(twins.def.links[0].mass, 0.5);
-  EXPECT_TRUE(twins.has_note(RDM_NOTE_CHANGED, "a second inertial"));
+  EXPECT_TRUE(twins.has_note(RDM_NOTE_CHANGED, "second inertial was ignored"));
   // What is passed over is looked at all the same.
   other.replace(other.find("<mass"), 5, "<mas");
   expect_refused(with_arm(kInertial + other), RDM_ERROR_UNSUPPORTED, "nearest is mass");
@@ -170,7 +171,8 @@ TEST(Urdf, ABoundThatIsNoneIsNone) {
     EXPECT_DOUBLE_EQ(i.def.links[0].lower, -2 * M_PI);
     EXPECT_DOUBLE_EQ(i.def.links[0].upper, 0.5);
     EXPECT_EQ(i.def.links[0].velocity, 0);
-    EXPECT_TRUE(i.has_note(RDM_NOTE_CHANGED, "joint j: lower -" + std::string(far) + " is none: -6.28319"));
+    EXPECT_TRUE(i.has_note(RDM_NOTE_CHANGED, "joint j: lower -" + std::string(far) +
+                                                 " means no limit, and was replaced by -6.28319"));
     EXPECT_TRUE(i.has_note(RDM_NOTE_CHANGED, "effort"));
     EXPECT_TRUE(i.has_note(RDM_NOTE_GUESSED, "joint j: effort"));
   }
@@ -385,8 +387,9 @@ TEST(Urdf, DoctypesAndXmlErrorsSayWhatIsWrong) {
   expect_refused("<robot name='x'><link name='a'></robot>", RDM_ERROR_FORMAT,
                  "this is not XML: an element that is closed by the end of another one");
   expect_refused("<!-- a -->\n -->\n<mujoco><worldbody/></mujoco>", RDM_ERROR_FORMAT,
-                 "line 3: mujoco: no body");  // no .robot file
-  expect_refused("<robot name=x>", RDM_ERROR_FORMAT, "no XML: an attribute that is not name=\"value\"");
+                 "line 3: mujoco: there is no body");  // no .robot file
+  expect_refused("<robot name=x>", RDM_ERROR_FORMAT,
+                 "this is not XML: an attribute that is not name=\"value\"");
 }
 
 // ---- meshes ----
@@ -405,8 +408,8 @@ TEST(Urdf, MeshesAreFoundByTheirWholeNameBeforeAPartOfIt) {
   EXPECT_FALSE(whole.has_note(RDM_NOTE_CHANGED, "no folder hand"));
   const Import part = read("package://other/meshes/a.obj");
   EXPECT_LT(part.def.shapes[0].size[0], whole.def.shapes[0].size[0]);
-  EXPECT_TRUE(
-      part.has_note(RDM_NOTE_CHANGED, "mesh package://other/meshes/a.obj: no folder other holds it; "));
+  EXPECT_TRUE(part.has_note(RDM_NOTE_CHANGED,
+                            "mesh package://other/meshes/a.obj: there is no folder other with it; "));
   const Import windows = read("..\\meshes\\a.obj");
   EXPECT_EQ(windows.def.shapes[0].size[0], whole.def.shapes[0].size[0]);
   EXPECT_TRUE(windows.has_note(RDM_NOTE_CHANGED, "\\ was read as /"));

@@ -392,7 +392,7 @@ TEST(Objects, RefuseWhatNoBodyCouldBeMadeOf) {
   refused(Code::kArgument, "none of its shapes collides",
           [](Object&, ObjectShape& s) { s.collides = false; });
   refused(Code::kArgument, "not positive definite", [](Object& o, ObjectShape&) { o.moment[0] = 1; });
-  refused(Code::kArgument, "triangle rule",
+  refused(Code::kArgument, "triangle inequality",
           [](Object& o, ObjectShape&) { o.moment[0] = o.moment[1] = 1, o.moment[2] = 3; });
   const Vec3 flat[] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
   refused(Code::kArgument, "plane",
