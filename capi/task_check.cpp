@@ -387,7 +387,7 @@ void check_rows(const PoolConfig& config, const char* task, Patience* patience) 
   for (int32_t step = 1; step <= kPoolSteps; ++step) {
     step_pool(together, Baseline::kRandom, step, patience);
     step_apart(apart, patience);
-    compare_rows(*together, *apart, task, step, "beside other rows than alone");
+    compare_rows(*together, *apart, task, step, "when it is computed together with other worlds");
   }
 }
 

@@ -87,7 +87,8 @@ void get_joints(const rdm_world* world, int32_t what, int32_t first, size_t coun
   j.struct_size = sizeof j;
   good(rdm_world_get_joints(world, &j));
   if (first < 0 || first > j.count || count > static_cast<size_t>(j.count - first))
-    fail(Code::kRange, "first, count: %zu joints from %d on, of %d", count, first, j.count);
+    fail(Code::kRange, "first, count: %zu joints from joint %d on are not all among the %d of the scene",
+         count, first, j.count);
   const double* const of[] = {j.q, j.qd, j.target, j.torque};
   std::copy_n(of[what] + first, count, x);
 }
@@ -95,7 +96,7 @@ void get_joints(const rdm_world* world, int32_t what, int32_t first, size_t coun
 void set_joints(rdm_world* world, int32_t first, size_t count, const double* x) {
   double q[kRobotJoints], qd[kRobotJoints];
   if (count > kRobotJoints)
-    fail(Code::kRange, "count: %zu joints, a robot has at most %zu", count, kRobotJoints);
+    fail(Code::kRange, "count: %zu joints are too many, a robot has at most %zu", count, kRobotJoints);
   for (size_t k = 0; k < count; ++k) q[k] = x[2 * k], qd[k] = x[2 * k + 1];
   good(rdm_world_set_joints(world, first, q, qd, count));
 }
@@ -125,8 +126,8 @@ rdm_result each(rdm_world** worlds, size_t n, size_t count, const double* x, F&&
     need(worlds, "worlds");
     need(x, "x");
     if (n > kMostRows || count > kMostItems)
-      fail(Code::kRange, "n, count: %zu worlds, %zu items, at most %zu and %zu", n, count, kMostRows,
-           kMostItems);
+      fail(Code::kRange, "n, count: %zu worlds and %zu items; at most %zu worlds and %zu items are allowed",
+           n, count, kMostRows, kMostItems);
     for (size_t i = 0; i < n; ++i) f(worlds[i], i);
   });
 }
@@ -141,7 +142,7 @@ rdm_result rdm_world_get_many(rdm_world** worlds, size_t n, int32_t what, int32_
     if (what >= RDM_QUANTITY_Q && what <= RDM_QUANTITY_TORQUE)
       return get_joints(world, what, first, count, at);
     if (what < RDM_QUANTITY_Q || what > RDM_QUANTITY_TOUCH)
-      fail(Code::kRange, "what: %d cannot be asked for, [0, 9] can", what);
+      fail(Code::kRange, "what: %d cannot be read, only 0 to 9 can", what);
     for (size_t k = 0; k < count; ++k) get_one(world, what, first + static_cast<int32_t>(k), at + k * width);
   });
 }
@@ -169,7 +170,7 @@ rdm_result rdm_world_set_many(rdm_world** worlds, size_t n, int32_t what, int32_
           set_one(world, what, first + static_cast<int32_t>(k), at + k * width);
         return;
       default:
-        fail(Code::kRange, "what: %d cannot be set, 2, 5, 6 and [10, 15] can", what);
+        fail(Code::kRange, "what: %d cannot be set, only 2, 5, 6 and 10 to 15 can", what);
     }
   });
 }

@@ -186,7 +186,7 @@ Report run_view(ViewFlags flags) {
   EndScope scope;
   std::fprintf(stderr, "%s\nCtrl-C ends it\n", server.address().c_str());
   if (flags.opens && !open_browser(server.address().c_str()))
-    std::fprintf(stderr, "--open: no program opens it; give the address to a browser\n");
+    std::fprintf(stderr, "--open: no browser was found; open the address yourself\n");
   View view(session, server, flags.paused);
   view.run();
   session.finish();
@@ -210,30 +210,29 @@ Report run_view(ViewFlags flags) {
 void add_view(CLI::App& app, Run& run) {
   auto flags = std::make_shared<ViewFlags>();
   CLI::App* command = app.add_subcommand(
-      "view", "A page on running worlds: turn, pause, go back, push, act by hand, record demonstrations");
+      "view", "Show running worlds on a web page: look around, pause, go back, push, act by hand, record");
   CLI::Option* task =
       add_pool_flags(*command, flags->view.pool, "task, or its file (.task); default: the policy's");
   command
       ->add_option("--policy", flags->view.policies,
-                   "who acts: policy file, run folder, .demo file, recorded .npz file, trained, plan, demo, "
-                   "zero, hold or "
-                   "random; repeatable: others that the page can choose")
+                   "what acts: policy file, run folder, .demo file, recorded .npz file, trained, plan, demo, "
+                   "zero, hold or random; repeat it to offer more choices on the page")
       ->allow_extra_args(false);
-  command->add_option("--port", flags->port, "port at 127.0.0.1; 0: one that is free")
+  command->add_option("--port", flags->port, "port on 127.0.0.1; 0: any free one")
       ->check(CLI::Range(0, 65535));
   command->add_flag("--open", flags->opens, "open the page in a browser");
-  command->add_flag("--paused", flags->paused, "begin paused");
-  command->add_option("--history", flags->megabytes, "MB of states that are kept to go back to")
+  command->add_flag("--paused", flags->paused, "start paused");
+  command->add_option("--history", flags->megabytes, "memory for past states to go back to, MB")
       ->check(CLI::Range(0.0, 65536.0));
   command->add_option("--record", flags->view.record,
-                      "file that the page's record button writes, .npz or .csv");
+                      "file that the page's record button writes (.npz or .csv)");
   add_shield_flag(*command, flags->view.shield);
   add_cost_limit_flag(*command, flags->view.limits);
   add_set_flag(*command, flags->sets);
   command->callback([&run, flags, task] {
     flags->task_given = task->count() > 0;
     if (flags->view.pool.envs > kMostViewed)
-      throw Usage(format("--envs: a page shows at most %d worlds", kMostViewed));
+      throw Usage(format("--envs: the page shows at most %d worlds", kMostViewed));
     run = [flags] { return run_view(*flags); };
   });
 }

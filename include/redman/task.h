@@ -274,11 +274,11 @@ RDM_API rdm_result rdm_world_push_base(rdm_world *world, int32_t robot, const do
 RDM_API rdm_result rdm_world_push_link(rdm_world *world, int32_t link, const double force[3],
                                        const double point[3]);
 
-enum rdm_quantity { /* of worlds, each so many doubles */
+enum rdm_quantity { /* a quantity of worlds, and how many doubles it has */
   RDM_QUANTITY_Q = 0,          /* 1: coordinate of a joint, rad (m) */
   RDM_QUANTITY_QD = 1,         /* 1: its velocity, rad/s (m/s) */
-  RDM_QUANTITY_TARGET = 2,     /* 1: what its drive goes for; can be set */
-  RDM_QUANTITY_TORQUE = 3,     /* 1: of its drive, mean over the step, N m (N) */
+  RDM_QUANTITY_TARGET = 2,     /* 1: target of its drive; can be set */
+  RDM_QUANTITY_TORQUE = 3,     /* 1: torque of its drive, mean over the step, N m (N) */
   RDM_QUANTITY_LINK = 4,       /* 13: p, q, v, w as rdm_motion */
   RDM_QUANTITY_BASE = 5,       /* 13: likewise, of a robot; can be set where it is free */
   RDM_QUANTITY_BODY = 6,       /* 13: likewise; can be set */
@@ -294,10 +294,10 @@ enum rdm_quantity { /* of worlds, each so many doubles */
   RDM_QUANTITY_BASE_PUSH = 14, /* 6: as rdm_world_push_base */
   RDM_QUANTITY_LINK_PUSH = 15  /* 6: force and point as rdm_world_push_link */
 };
-/* The quantity `what` of items first to first + count - 1 of each of n worlds to (or from) x
- * [n][count][width], width the doubles of one. What is set is what the function of one world sets,
- * row by row: an error leaves the rows before it set. RANGE for items that the scene does not have,
- * and of those that are set together for another count. */
+/* Gets or sets quantity `what` of items first to first + count - 1 in each of n worlds, in x
+ * [n][count][width], where width is the number of doubles of one. Setting does what the function
+ * for one world does, row by row: on an error, the rows before it are set. RANGE for items that the
+ * scene does not have, and for a count that is not that of items which are only set together. */
 RDM_API rdm_result rdm_world_get_many(rdm_world **worlds, size_t n, int32_t what,
                                       int32_t first, size_t count, double *x);
 RDM_API rdm_result rdm_world_set_many(rdm_world **worlds, size_t n, int32_t what,
@@ -327,14 +327,14 @@ typedef struct rdm_verdict { /* what judge fills; zeroed before */
   int32_t terminated;      /* flag: the episode ends here */
   int32_t success;         /* flag */
 } rdm_verdict;
-/* what a function of many worlds is called with; row i is of worlds[i] */
+/* what a function for many worlds is called with; row i belongs to worlds[i] */
 typedef struct rdm_task_rows {
   uint32_t struct_size;    /* bytes */
   int32_t count;           /* of worlds, 1 to 256 */
   rdm_world **worlds;      /* [count] in the order of their numbers */
-  void *states;            /* [count][state_bytes] copies, which go back where the function may
-                            * change them; NULL with state_bytes 0 */
-  rdm_result *results;     /* [count] RDM_OK; another code fails that world alone */
+  void *states;            /* [count][state_bytes] copies of the states, written back where the
+                            * function may change them; NULL with state_bytes 0 */
+  rdm_result *results;     /* [count] RDM_OK; any other code makes that world alone fail */
   rdm_random *randoms;     /* [count] reset: as its `random` */
   const float *actions;    /* [count][action_dim] control */
   const int32_t *steps;    /* [count] judge: control steps of the episode, from 1 */
@@ -424,17 +424,17 @@ typedef struct rdm_task_def { /* a whole task; all but `user` is copied by rdm_t
   rdm_result (*check_state)(void *user, const void *instance, const void *state);
   /* called once, after the task and its last pool were destroyed. NULL: none */
   void (*release)(void *user);
-  /* In the place of the functions above, for many worlds at once; NULL: none. Where one is given
-   * the function of one world may be NULL. A pool calls them on the thread that called it, for up
-   * to 256 worlds together, between two steps of its engine: a runtime is then entered once a step
-   * and not once a world. A row depends on its own world alone, as rdm_task_check tries. What they
-   * return is of all rows */
+  /* For many worlds at once, instead of the functions above; NULL: none. Where one is given, the
+   * function for one world may be NULL. A pool calls them on the thread that called it, for up to
+   * 256 worlds together, between two steps of its engine, so that a runtime is entered once a step
+   * and not once a world. A row must depend on its own world alone, which rdm_task_check tests.
+   * What they return is the result of all rows */
   rdm_result (*reset_many)(void *user, const void *instance, const rdm_task_rows *rows);
-  /* as reset_many, in the place of control */
+  /* as reset_many, instead of control */
   rdm_result (*control_many)(void *user, const void *instance, const rdm_task_rows *rows);
-  /* as reset_many, in the place of judge */
+  /* as reset_many, instead of judge */
   rdm_result (*judge_many)(void *user, const void *instance, const rdm_task_rows *rows);
-  /* as reset_many, in the place of observe */
+  /* as reset_many, instead of observe */
   rdm_result (*observe_many)(void *user, const void *instance, const rdm_task_rows *rows);
 } rdm_task_def;
 RDM_API rdm_result rdm_task_def_init(rdm_task_def *def,

@@ -240,7 +240,7 @@ TEST(OwnTaskRows, CheckPassesAndSeesARowThatDependsOnOthers) {
   };
   const Registered second(bad.def);
   EXPECT_EQ(rdm_task_check("rows_bad", nullptr, nullptr, nullptr, text, sizeof text), RDM_ERROR_ARGUMENT);
-  EXPECT_NE(std::string(text).find("beside other rows than alone"), std::string::npos) << text;
+  EXPECT_NE(std::string(text).find("computed together with other worlds"), std::string::npos) << text;
 }
 
 TEST(OwnTaskRows, GettersAndSettersOfMany) {

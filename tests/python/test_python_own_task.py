@@ -256,7 +256,7 @@ class OwnTask(unittest.TestCase):
             with self.subTest(fault), self.assertRaisesRegex(redman.Error, said):
                 pool.step(pool.baseline("hold"))
         Broken.fault = "rows"
-        with self.assertRaisesRegex(redman.ArgumentError, "beside other rows than alone"):
+        with self.assertRaisesRegex(redman.ArgumentError, "computed together with other worlds"):
             redman.check_task(Broken)
 
     def test_one_world_fails_alone(self):

@@ -350,12 +350,12 @@ class Scale(enum.IntEnum, metaclass=Members):
 
 
 class Quantity(enum.IntEnum, metaclass=Members):
-    """of worlds, each so many doubles
+    """a quantity of worlds, and how many doubles it has
 
     Q = 0: 1: coordinate of a joint, rad (m)
     QD = 1: 1: its velocity, rad/s (m/s)
-    TARGET = 2: 1: what its drive goes for; can be set
-    TORQUE = 3: 1: of its drive, mean over the step, N m (N)
+    TARGET = 2: 1: target of its drive; can be set
+    TORQUE = 3: 1: torque of its drive, mean over the step, N m (N)
     LINK = 4: 13: p, q, v, w as rdm_motion
     BASE = 5: 13: likewise, of a robot; can be set where it is free
     BODY = 6: 13: likewise; can be set
@@ -3834,14 +3834,14 @@ class rdm_verdict(Structure):
 
 
 class rdm_task_rows(Structure):
-    """what a function of many worlds is called with; row i is of worlds[i]
+    """what a function for many worlds is called with; row i belongs to worlds[i]
 
     struct_size: bytes
     count: of worlds, 1 to 256
     worlds: [count] in the order of their numbers
-    states: [count][state_bytes] copies, which go back where the function may change them; NULL with state_bytes
-        0
-    results: [count] RDM_OK; another code fails that world alone
+    states: [count][state_bytes] copies of the states, written back where the function may change them; NULL
+        with state_bytes 0
+    results: [count] RDM_OK; any other code makes that world alone fail
     randoms: [count] reset: as its `random`
     actions: [count][action_dim] control
     steps: [count] judge: control steps of the episode, from 1
@@ -4105,13 +4105,14 @@ class rdm_task_def(Structure):
     check_state: returns FORMAT for a saved state that no world can have: indices out of range, numbers that are
         not finite. NULL: all are accepted
     release: called once, after the task and its last pool were destroyed. NULL: none
-    reset_many: In the place of the functions above, for many worlds at once; NULL: none. Where one is given the
-        function of one world may be NULL. A pool calls them on the thread that called it, for up to 256 worlds
-        together, between two steps of its engine: a runtime is then entered once a step and not once a world. A
-        row depends on its own world alone, as rdm_task_check tries. What they return is of all rows
-    control_many: as reset_many, in the place of control
-    judge_many: as reset_many, in the place of judge
-    observe_many: as reset_many, in the place of observe
+    reset_many: For many worlds at once, instead of the functions above; NULL: none. Where one is given, the
+        function for one world may be NULL. A pool calls them on the thread that called it, for up to 256 worlds
+        together, between two steps of its engine, so that a runtime is entered once a step and not once a
+        world. A row must depend on its own world alone, which rdm_task_check tests. What they return is the
+        result of all rows
+    control_many: as reset_many, instead of control
+    judge_many: as reset_many, instead of judge
+    observe_many: as reset_many, instead of observe
     """
 
     struct_size: int
@@ -6007,18 +6008,18 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_world_get_many": Function(
         c_int32, {"worlds": POINTER(c_void_p), "n": c_size_t, "what": c_int32, "first": c_int32, "count": c_size_t, "x": c_void_p},
         {"x": Rows("float64", ("n", "count", "width"))}, True,
-        """The quantity `what` of items first to first + count - 1 of each of n worlds to (or from) x
-        [n][count][width], width the doubles of one. What is set is what the function of one world sets,
-        row by row: an error leaves the rows before it set. RANGE for items that the scene does not have,
-        and of those that are set together for another count.
+        """Gets or sets quantity `what` of items first to first + count - 1 in each of n worlds, in x
+        [n][count][width], where width is the number of doubles of one. Setting does what the function
+        for one world does, row by row: on an error, the rows before it are set. RANGE for items that the
+        scene does not have, and for a count that is not that of items which are only set together.
         """),
     "rdm_world_set_many": Function(
         c_int32, {"worlds": POINTER(c_void_p), "n": c_size_t, "what": c_int32, "first": c_int32, "count": c_size_t, "x": c_void_p},
         {"x": Rows("float64", ("n", "count", "width"))}, True,
-        """The quantity `what` of items first to first + count - 1 of each of n worlds to (or from) x
-        [n][count][width], width the doubles of one. What is set is what the function of one world sets,
-        row by row: an error leaves the rows before it set. RANGE for items that the scene does not have,
-        and of those that are set together for another count.
+        """Gets or sets quantity `what` of items first to first + count - 1 in each of n worlds, in x
+        [n][count][width], where width is the number of doubles of one. Setting does what the function
+        for one world does, row by row: on an error, the rows before it are set. RANGE for items that the
+        scene does not have, and for a count that is not that of items which are only set together.
         """),
     "rdm_random_bits": Function(
         c_uint64, {"random": POINTER(rdm_random)},

@@ -59,7 +59,7 @@ Json Session::command(const Document& asked) {
     return static_cast<int32_t>(integer_at(asked, "world", 0, static_cast<int64_t>(pool_->num_envs()) - 1));
   };
   const auto untaken = [&](const char* why) {
-    if (take_) throw Usage(std::string(why) + ": end the recording first");
+    if (take_) throw Usage(std::string(why) + ": not while recording; end the recording first");
   };
   if (what == "picture") {
     const std::string camera = text_at(asked, "camera", 64);
@@ -91,7 +91,9 @@ Json Session::command(const Document& asked) {
     untaken("another actor");
     const std::string who = text_at(asked, "who");
     if (std::find(actors_.begin(), actors_.end(), who) == actors_.end())
-      throw Usage(who + ": not one of those who can act here");
+      throw Usage(
+          who +
+          ": this page cannot act with it; it offers only those given by --policy, zero, hold and random");
     set_actor(who, shield_);
     by_hand_ = false;
   } else if (what == "shield") {
@@ -122,7 +124,7 @@ Json Session::command(const Document& asked) {
     g.reach = number_at(asked, "reach", 1e-3, 1e6);
     g.leads = asked.contains("leads") && flag_at(asked, "leads");
     if (g.leads && g.world != watched_)
-      throw Usage("world " + std::to_string(g.world) + ": another one is acted in by hand");
+      throw Usage("world " + std::to_string(g.world) + ": only the chosen world can be led by hand");
     grab_ = g;
   } else if (what == "release") {
     grab_.reset();
@@ -135,7 +137,7 @@ Json Session::command(const Document& asked) {
     if (!on()) return end_take();
     begin_take();
   } else {
-    throw Usage(what + ": not something that can be asked for");
+    throw Usage(what + ": unknown command of the page");
   }
   return Json::object();
 }

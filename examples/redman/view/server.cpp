@@ -18,7 +18,7 @@ constexpr size_t kPart = size_t{1} << 16;
 std::string random_token() {
   unsigned char bytes[16];
   if (getentropy(bytes, sizeof bytes) != 0)
-    throw Failure(std::string("no random token: ") + std::strerror(errno));
+    throw Failure(std::string("cannot get random bytes for the page's address: ") + std::strerror(errno));
   std::string out;
   for (const unsigned char b : bytes) out += format("%02x", static_cast<unsigned>(b));
   return out;

@@ -124,7 +124,7 @@ void Session::leave_past() {
 void Session::seek(int64_t moment) {
   moment = std::clamp(moment, history_.first(), history_.last());
   if (take_ && moment < take_->begin)
-    throw Usage("the episodes before are recorded: going back ends at the start of this one");
+    throw Usage("earlier episodes are already recorded, so it cannot go back beyond the start of this one");
   pool_->set_state(history_.at(moment).state);
   at_ = moment;
   plays_ = false;
@@ -181,7 +181,7 @@ void Session::lead() {
   if (!lead_->bring(*pool_, g.world, g.shape, g.local, g.to, own_.data())) {
     const std::string name = looks_.bodies[static_cast<size_t>(g.shape)].name;
     grab_.reset();
-    throw Usage(name + ": no joint of the action moves it; pull it instead");
+    throw Usage(name + ": no joint that the action drives moves it; pull it instead");
   }
 }
 
@@ -225,7 +225,7 @@ void Session::note_step() {
 }
 
 void Session::begin_take() {
-  if (take_) throw Usage("it records already");
+  if (take_) throw Usage("a recording is already running");
   Take take;
   const std::filesystem::path path = settings_.record;
   take.file = takes_ == 0 ? settings_.record
@@ -239,7 +239,7 @@ void Session::begin_take() {
 }
 
 Json Session::end_take() {
-  if (!take_) throw Usage("nothing is recorded");
+  if (!take_) throw Usage("no recording is running");
   Take take = std::move(*take_);
   take_.reset();
   ++changes_;
