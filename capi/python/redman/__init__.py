@@ -97,7 +97,7 @@ moved(globals(), __all__)  # what is public is of this module, in texts and in p
 if not TYPE_CHECKING:  # a type checker would take it for every name
 
     def __getattr__(name):
-        """Adapters are imported when they are asked for; other libraries' words say what to write instead."""
+        """Imports an adapter when it is first used; for names of other libraries, the error says what to write instead."""
         import importlib
         from ._names import module_hint
         if name in ("gym", "omnisafe", "safety", "sb3"):

@@ -1,4 +1,4 @@
-"""Actor: a policy that plays, its actions held as long as it decides."""
+"""Actor: plays a policy and holds each of its actions as long as a decision lasts."""
 from __future__ import annotations
 
 import contextlib
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @contextlib.contextmanager
 def on_task(pool: Optional[Pool]) -> Iterator[None]:
-    """What does not fit a policy is said with the task that it does not fit."""
+    """Adds to an error about a policy that does not fit the name of the task."""
     try:
         yield
     except VersionError as error:
@@ -31,7 +31,7 @@ def on_task(pool: Optional[Pool]) -> Iterator[None]:
 
 
 def worlds_of(where: Any) -> tuple[Optional[Pool], Any]:
-    """The pool of an environment, and its worlds: those of redman.gym, sb3, safety and omnisafe, wrapped or not."""
+    """The pool of an environment and its worlds, for environments of redman.gym, sb3, safety and omnisafe, wrapped or not."""
     if isinstance(where, Pool):
         return where, None
     inner: Any = where
@@ -56,10 +56,10 @@ class Actor:
         for _ in range(75):                                  for _ in range(75):
             pool.step(actor())                                   obs, ... = env.step(actor(obs))
 
-    In a pool, or in an environment of redman.gym, sb3, safety or omnisafe (wrapped or not), it knows the control steps of a
-    step, the center that is added to actions, what the worlds see and where episodes have begun, so that a policy earns the same
-    in all of them. For worlds of another kind say num_envs=, action_repeat= and center=, and where episodes begin anew:
-    reset(mask).
+    In a pool, or in an environment of redman.gym, sb3, safety or omnisafe (wrapped or not), it finds out how many control
+    steps a step has, the center that is added to actions, what the worlds see and where episodes have begun, so that a
+    policy behaves the same in all of them. For worlds of another kind give num_envs=, action_repeat= and center=, and call
+    reset(mask) where episodes begin.
     """
 
     def __init__(self, policy: Policy, where: Any = None, *, num_envs: Optional[int] = None, action_repeat: int = 1,
@@ -101,16 +101,17 @@ class Actor:
 
     @property
     def hold(self) -> int:
-        """Steps of the worlds that a decision lasts."""
+        """Number of steps of the worlds that a decision lasts."""
         return self.policy.info.action_repeat // self._repeat
 
     def __call__(self, obs: Any = None, began: Any = None, mask: Any = None, points: Any = None, point_class: Any = None,
                  point_color: Any = None) -> Any:
         """Actions [num_envs][action_dim] for the next step; [action_dim] for one observation [obs_dim].
 
-        obs None: the worlds' own. Others are compared with these: what a wrapper has made of an observation is no policy's
-        business that learned without it. began: where episodes have begun, beside those that are known to. mask: where a
-        step will be taken. points, point_class, point_color: clouds of worlds that are not known.
+        obs None: the worlds' own observations. Others are compared with these, and refused where a wrapper has changed an
+        observation that the policy learned without the wrapper. began: where episodes have begun, in addition to those that
+        the actor knows of. mask: where a step will be taken. points, point_class, point_color: the clouds of worlds of
+        another kind.
         """
         rows, single = self._observed(obs)
         begun = self._begun()
@@ -127,13 +128,14 @@ class Actor:
         return self._as_given(action[0] if single else action, obs)
 
     def reset(self, mask: Any = None) -> None:
-        """Episodes begin anew, everywhere or where mask [num_envs] is true: a decision is due there."""
+        """Begins new episodes, everywhere or where mask [num_envs] is true: a decision is due there."""
         chosen = None if mask is None else given(mask, self._rows["mask"], self._lengths, "mask", spread=True)
         check(lib.rdm_actor_reset(self._handle.value, address(chosen), None))
 
     def predict(self, observation: Any, state: Any = None, episode_start: Any = None,
                 deterministic: bool = True) -> tuple[Any, Any]:
-        """As a model of Stable-Baselines3: (action, state). The actor holds by itself, and state is handed back as it came."""
+        """Like predict of a Stable-Baselines3 model: returns (action, state). The actor holds actions itself and returns
+        state unchanged."""
         if deterministic == self.stochastic:
             raise ArgumentError(f"predict: deterministic={deterministic}, but this actor "
                                 f"{'samples' if self.stochastic else 'takes the mean'} (policy.actor(..., stochastic=...))")
@@ -148,7 +150,7 @@ class Actor:
         check(lib.rdm_actor_read_state(self._handle.value, bytes(state), len(state)))
 
     def _observed(self, obs: Any) -> tuple[Array, bool]:
-        """Rows, and whether they came as one without the axis of worlds."""
+        """Rows, and whether they were given as one row without the axis of worlds."""
         own = None if self._pool is None else self._pool.obs
         if obs is None:
             if own is None:
@@ -170,7 +172,8 @@ class Actor:
         return np.ndim(entry["state"] if isinstance(entry, dict) else entry) == 1
 
     def _flat(self, obs: Any) -> Array:
-        """Of an observation as the adapters give it: a row, {"state": row, ...}, or an entry for each field; a tensor."""
+        """The row of an observation in any form of the adapters: a row, {"state": row, ...}, a dict with an entry for each
+        field, or a tensor."""
         if isinstance(obs, dict):
             if "state" in obs:
                 obs = obs["state"]

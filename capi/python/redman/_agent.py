@@ -1,4 +1,4 @@
-"""Agent: one algorithm that acts and learns, on the worlds of a pool or on a world of your own."""
+"""Agent: one algorithm that acts and learns, in the worlds of a pool or in environments of your own."""
 from __future__ import annotations
 
 import _thread
@@ -41,8 +41,8 @@ _MODES = {"sample": ActMode.SAMPLE, "mean": ActMode.MEAN}
 class Epoch(_abi.Epoch, Dict[str, Any]):  # type: ignore[misc]  # a record has a hash, a dict has none
     """One row of the learning curve; means over the last 100 finished episodes.
 
-    costs and multipliers have those of cost and multiplier by name. violations, refused, unproven and copied are None where
-    there was nothing to count. Also a dict of all that it has, which json.dumps and loggers take.
+    costs and multipliers have the values of cost and multiplier by the names of costs. violations, refused, unproven and
+    copied are None where there was nothing to count. It is also a dict of all its values, for json.dumps and loggers.
     """
 
     costs: dict[str, float]
@@ -97,14 +97,15 @@ class Agent(Taught, Hinted):
         agent.record(reward, cost, terminated, truncated, final_obs)
         epoch = agent.update(obs)                       # after option horizon such decisions
 
-        agent = redman.Agent(pool, costs=["fast"], cost_limits=5)       # costs of your own, in place of the pool's
+        agent = redman.Agent(pool, costs=["fast"], cost_limits=5)       # costs of your own instead of the pool's
         pool.step(agent.act(pool.obs))                  # a pool with options={"action_repeat": 0}: a step is a decision
         agent.record(pool.reward, too_fast(pool.final_obs), pool.terminated, pool.truncated, pool.final_obs)
 
-    cost_limits: of column 0, of each column (None, or NaN in an array: no limit), or by the names of the costs. A pool brings its
-    dimensions, its task's defaults for learners, start pose and limits; costs, names of columns, replace its costs and
-    their limits. fields, {name: (offset, count)}, name the parts of other rows for actor_obs and critic_obs. ranks: the agent
-    of one process of several (redman.Ranks). One thread at a time; others wait.
+    cost_limits: a limit for column 0, one for each column (None, or NaN in an array: no limit), or a dict by the names of
+    the costs. A pool gives its dimensions, its task's defaults for learners, start pose and limits; costs, names of columns,
+    replace its costs and their limits. For rows of other origin, fields, {name: (offset, count)}, names parts of them for
+    actor_obs and critic_obs. ranks: the place of this process among several that learn together (redman.Ranks). One thread
+    uses an agent at a time; others wait.
     """
 
     _hints = {
@@ -174,7 +175,8 @@ class Agent(Taught, Hinted):
 
     def act(self, obs: Any, mode: str = "sample", out: Optional[FloatArray] = None, points: Any = None,
             point_class: Any = None, point_color: Any = None) -> FloatArray:
-        """Actions [num_envs][action_dim] for obs [num_envs][obs_dim]: a sample, which record must follow, or the mean.
+        """Actions [num_envs][action_dim] for obs [num_envs][obs_dim]: a sample, after which record must be called, or the
+        mean.
 
         One call is one decision, to be held for option action_repeat control steps. Samples are not clipped. An agent
         with option encoder takes points [num_envs][encoder_points][3] too, with encoder_classes their classes, and with encoder_color
@@ -201,8 +203,8 @@ class Agent(Taught, Hinted):
 
     def record(self, reward: Any, cost: Any = None, terminated: Any = None, truncated: Any = None,
                final_obs: Any = None, valid: Any = None, success: Any = None, steps: Any = None) -> None:
-        """What followed the last sampled actions, a row per world. None: no ends, all rows are valid, no success, a truncation has
-        value 0, a decision took option action_repeat control steps.
+        """Records what followed the last sampled actions, a row per world. None means: no ends, all rows are valid, no
+        success, what follows a truncation is valued 0, a decision took as many control steps as option action_repeat says.
 
         reward and cost are sums over the decision, final_obs is read where truncated, steps are control steps.
         """
@@ -216,10 +218,10 @@ class Agent(Taught, Hinted):
     def put(self, obs: Any, action: Any, reward: Any, cost: Any = None, terminated: Any = None, truncated: Any = None,
             final_obs: Any = None, valid: Any = None, success: Any = None, steps: Any = None,
             generation: int = 0) -> None:
-        """A decision that was taken elsewhere, in the place of act and record: obs, the actions that the policy of this
-        epoch sampled for them, not clipped, and what followed, as record takes it.
+        """Records a decision that was taken elsewhere, instead of act and record: obs, the actions that the policy of this
+        epoch sampled for them, not clipped, and what followed, as in record.
 
-        generation: of that policy, as its file says; StateError when it is not the agent's any more. 0: not checked.
+        generation: that of the policy, as in its file; StateError when it is not the agent's any more. 0: not checked.
         """
         rows, actions = self._given("rdm_agent_put", "obs", obs), self._given("rdm_agent_put", "action", action)
         transition, kept = self._transition("put", reward=reward, cost=cost, terminated=terminated,
@@ -252,13 +254,13 @@ class Agent(Taught, Hinted):
         return self._epoch(epoch)
 
     def update_begin(self, last_obs: Any) -> None:
-        """The same in slices, between which the caller can act; then update_slice until it gives the epoch.
+        """Begins the same update in slices, between which the caller can act: call update_slice until it returns the epoch.
 
             agent.update_begin(obs)
             while (epoch := agent.update_slice()) is None:
                 robot.move(agent.act(robot.look(), "mean"))        # the policy of before
 
-        The bytes are those of one update. Between two slices all that would change the agent is a StateError;
+        The result has the same bytes as one update. Between two slices, whatever would change the agent raises StateError;
         discard drops the update.
         """
         rows = self._given("rdm_agent_update_begin", "last_obs", last_obs)
@@ -266,22 +268,23 @@ class Agent(Taught, Hinted):
             self._check(lib.rdm_agent_update_begin(self._a, rows.ctypes.data))
 
     def update_slice(self, units: int = 1) -> Optional[Epoch]:
-        """So many pieces of work more, each a network over 256 rows at most; the epoch when that was the last one."""
+        """Does `units` more pieces of work, each at most one pass of a network over 256 rows; returns the epoch after the
+        last piece."""
         epoch, done = sized(_abi.rdm_epoch), ctypes.c_int32()
         with self._lock:
             self._check(lib.rdm_agent_update_slice(self._a, units, byref(done), byref(epoch)))
         return self._epoch(epoch) if done.value else None
 
     def discard(self) -> None:
-        """Drops the horizon that has begun, an update in slices, and a cancel that waits; the policy is as before."""
+        """Drops a horizon that has begun, an update in slices and a pending cancel; the policy is as before."""
         with self._lock:
             self._check(lib.rdm_agent_discard(self._a))
 
     def rollout(self, pool: Pool) -> Epoch:
-        """One epoch natively: act, step and record until the horizon is full, then update.
+        """One epoch within the library: act, step and record until the horizon is full, then update.
 
         The pool must have been reset and must not have autoreset off. Ctrl-C ends it early: this horizon is dropped,
-        KeyboardInterrupt is raised, agent and pool are good.
+        KeyboardInterrupt is raised, and agent and pool can still be used.
         """
         epoch = sized(_abi.rdm_epoch)
         with self._lock, pool._lock, contextlib.ExitStack() as stack:
@@ -292,10 +295,12 @@ class Agent(Taught, Hinted):
 
     @keywords(aliases={"total_timesteps": "steps", "total_steps": "steps", "env": "pool"})
     def learn(self, steps: float, pool: Optional[Pool] = None, callback: Optional[Callable[[Epoch], Any]] = None) -> Epoch:
-        """Rollouts until so many control steps of all worlds more are taken, rounded up to whole epochs; the last epoch.
+        """Makes rollouts until this many further control steps of all worlds are taken, rounded up to whole epochs; returns
+        the last epoch.
 
-        pool: None: the one that the agent was made for, as long as it lives; it is reset if it was not. callback(epoch) is called
-        after each; a true answer ends it. redman.train keeps the best policy and a folder too."""
+        pool: None means the pool that the agent was made for, as long as it exists; it is reset if it was not yet.
+        callback(epoch) is called after each epoch; a true result ends the call. redman.train also keeps the best policy and
+        a run folder."""
         if pool is None:
             pool = None if self._pool is None else self._pool()
         if pool is None:
@@ -316,7 +321,8 @@ class Agent(Taught, Hinted):
         lib.rdm_agent_cancel(self._a)
 
     def _run(self, call: Callable[..., int], *arguments: Any) -> None:
-        """A long call. In the main thread it runs beside it, which hears signals meanwhile."""
+        """Runs a long call. When called from the main thread, the call runs in another one, so that the main thread can
+        handle signals."""
         if threading.current_thread() is not threading.main_thread():
             self._check(call(self._a, *arguments))
             if raised:
@@ -360,13 +366,13 @@ class Agent(Taught, Hinted):
 
     @staticmethod
     def _wait(ended: list[bool]) -> None:
-        """For the end of a call that was cancelled, which more signals do not hasten."""
+        """Waits for the end of a call that was cancelled; further signals are ignored meanwhile."""
         while not ended:
             with contextlib.suppress(BaseException):
                 time.sleep(0.001)
 
     def _renew(self) -> None:
-        """The same agent without the cancel that came too late to be heard."""
+        """Makes the same agent again, without the cancel that came too late to end the call."""
         self.__setstate__(self.__getstate__())
 
     def _epoch(self, struct: _abi.rdm_epoch) -> Epoch:
@@ -389,7 +395,7 @@ class Agent(Taught, Hinted):
 
     @property
     def cost_limits(self) -> list[Optional[float]]:
-        """The limit of each cost column, None where there is none; option cost_limit is that of column 0."""
+        """The limit of each cost column, None where there is none; option cost_limit is the limit of column 0."""
         said = list(self._config["cost_limits"] or [-1.0] * self.cost_dim)
         if said:
             said[0] = float(self.options.get("cost_limit", said[0]))
@@ -397,12 +403,12 @@ class Agent(Taught, Hinted):
 
     @property
     def shield(self) -> Optional[Shield]:
-        """What looks at every decision of a rollout, None: nothing; to be set between horizons.
+        """The shield that checks every decision of a rollout, or None; set it between horizons.
 
             agent.shield = redman.Shield(pool, steps=agent.options["action_repeat"], budgets={"cost": 0})
 
-        Its decisions last as long as the agent's, and its first backup is what the agent itself would do without noise. Options
-        shield_learn and shield_penalty say what is learned from what it refuses.
+        Its decisions last as long as the agent's, and its first backup is the agent itself without noise. Options
+        shield_learn and shield_penalty say what the agent learns from decisions that the shield refuses.
         """
         return self._shield
 
@@ -428,8 +434,8 @@ class Agent(Taught, Hinted):
     # ---- state ------------------------------------------------------------------------------------------------
 
     def save(self, path: Union[None, str, os.PathLike[str]] = None) -> bytes:
-        """All state, between epochs: networks, optimiser, multipliers, normaliser, streams, counters. With a path it is
-        written there too, whole or not at all."""
+        """The complete state between epochs: networks, optimiser, multipliers, normaliser, streams, counters. With a path it
+        is also written to that file, entirely or not at all."""
         with self._lock:
             state = bytes_of(lib.rdm_agent_write_state, self._open())
         if path is not None:
@@ -437,7 +443,7 @@ class Agent(Taught, Hinted):
         return state
 
     def load(self, state: Union[bytes, bytearray, memoryview, str, os.PathLike[str]]) -> None:
-        """Continues from save() of an agent of the same configuration, its bytes or its path; nothing changes when it
+        """Continues from the bytes, or the path, of a save() of an agent of the same configuration; nothing changes when it
         fails."""
         data = read_whole(state, "agent") if isinstance(state, (str, os.PathLike)) else bytes(state)
         with self._lock:
@@ -463,7 +469,7 @@ class Agent(Taught, Hinted):
                 raw = ctypes.create_string_buffer(size.value)
 
     def close(self) -> None:
-        """Ends the agent. A second call does nothing."""
+        """Destroys the agent. A second call does nothing."""
         with self._lock:
             self._handle = None
             self._a = None
@@ -525,7 +531,7 @@ def _config_of(pool: Pool) -> dict[str, Any]:
 
 
 def known_options(algo: _discovery.Algo, options: Iterable[str]) -> dict[str, int]:
-    """What each option of an algorithm is; a key that it does not have is refused with the nearest that it has."""
+    """The kind of each option of an algorithm; refuses an unknown key and names the nearest known one."""
     kinds: dict[str, int] = {key: option.kind for key, option in algo.options.items()}
     for key in options:
         if kind_of(key, kinds) is None:

@@ -1,4 +1,4 @@
-"""Python functions that the library calls, as those of a task of your own: their exceptions are kept and raised."""
+"""Python functions that the library calls, such as those of a task of your own: their exceptions are kept and raised later."""
 from __future__ import annotations
 
 import ctypes
@@ -12,11 +12,11 @@ from ._names import nearest
 
 
 def c_function(member: str, function: Callable[..., Any]) -> Any:
-    """A Python function as a member of a struct of redman.h: c_function("rdm_task_def.judge", judge).
+    """Turns a Python function into a member of a struct of redman.h: c_function("rdm_task_def.judge", judge).
 
-    It is called with the arguments that the header says; None and 0 are success. What it raises is the failure of that
-    call, and the cause of the redman.Error that the call from Python raises then. Keep the result as long as the library
-    may call it: as long as a task is registered.
+    It is called with the arguments that the header lists; returning None or 0 means success. An exception makes that call
+    fail, and is the cause of the redman.Error that the call from Python then raises. Keep the result as long as the library
+    may call it, for a task as long as it is registered.
     """
     struct, _, name = member.partition(".")
     pointer: Any = getattr(ctypes, "_CFuncPtr")

@@ -27,7 +27,7 @@ _WIDTH, _HEIGHT, _LEFT, _TOP, _RIGHT, _BOTTOM = 300, 190, 56, 30, 20, 54  # of a
 
 
 class _Drawn:
-    """What draws itself in a notebook; as an image too, since exports to HTML take the lines out of an SVG."""
+    """Draws itself in a notebook, as an image too, since exports to HTML drop the lines of an SVG."""
 
     def _repr_svg_(self) -> str:
         raise NotImplementedError
@@ -48,8 +48,8 @@ _DRAWS = "it draws itself in a notebook; save('curve.svg') writes the picture"
 
 
 class Curve(_Drawn, Hinted, Dict[str, Column]):
-    """Columns by name ("TotalEnvSteps", "Metrics/EpRet", ...), a row for each epoch; draws itself in a notebook. A dict:
-    pandas.DataFrame(curve) has a row for each epoch too, as to_pandas() has.
+    """Columns by name ("TotalEnvSteps", "Metrics/EpRet", ...), a row for each epoch; draws itself in a notebook. It is a
+    dict, so pandas.DataFrame(curve) also has a row for each epoch, like to_pandas().
     """
 
     _hints = {"show": _DRAWS, "draw": _DRAWS, "df": "to_pandas()", "to_df": "to_pandas()",
@@ -111,7 +111,7 @@ class Curves(_Drawn, Hinted, Sequence[Curve]):
 
 
 def read(folder: Union[str, os.PathLike[str]]) -> Curve:
-    """The curve of one run folder. A row that a kill left unfinished is left out."""
+    """The curve of one run folder. An incomplete last row of a killed run is left out."""
     path = Path(folder)
     try:
         lines = read_bytes(path / "progress.csv", MOST_TEXT).decode(errors="replace").splitlines()
@@ -195,13 +195,13 @@ def _panel(title: str, column: str, curves: Sequence[Curve], limit: Optional[flo
 
 
 def as_image(svg: str) -> str:
-    """An SVG as an HTML image that holds it."""
+    """An HTML image that contains an SVG."""
     return f'<img src="data:image/svg+xml;base64,{base64.b64encode(svg.encode()).decode()}">'
 
 
 def _legends(curves: Sequence[Curve]) -> list[str]:
-    """A text for each curve, no two alike: its label; of those with one label the end of the folder's path that tells
-    them apart, or a number."""
+    """A text for each curve, all different: its label, and for curves of the same label the end of the folder's path that
+    distinguishes them, or a number."""
     labels = {(one.label, one.folder): one.label for one in curves}
     most = max(len(Path(folder).parts) for _, folder in labels) if labels else 0
     for depth in range(1, most + 1):

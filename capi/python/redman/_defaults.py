@@ -1,4 +1,4 @@
-"""What a task knows of learning it, in the words of learners other than redman's own."""
+"""A task's settings for learning, in the terms of learners other than redman's own."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -39,7 +39,7 @@ class Defaults:
 
 
 def defaults(task: str, options: Optional[Mapping[str, Any]] = None) -> Defaults:
-    """What a task with such options knows of learning it."""
+    """The settings for learning of a task with these options."""
     with Pool(task, options=options) as pool:
         own = pool.task.defaults
         options_of = {**algos()["trpo_lag"].options, **algos()["ppo_lag"].options}

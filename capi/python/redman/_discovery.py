@@ -1,4 +1,4 @@
-"""What exists: tasks, algorithms, robots, objects, each with all that the library says of it."""
+"""Lists of tasks, algorithms, robots and objects, each with all that the library says about it."""
 from __future__ import annotations
 
 import ctypes
@@ -23,7 +23,7 @@ R = TypeVar("R", bound=Record)
 
 
 class Option(_abi.OptionSpec):
-    """One row of an option table; default is as its kind says: a text, a number or a flag."""
+    """One row of an option table; the type of default follows its kind: a text, a number or a flag."""
 
     kind: OptionKind
     level: OptionLevel
@@ -35,7 +35,7 @@ class Option(_abi.OptionSpec):
 
 
 class Cost(_abi.CostInfo):
-    """A cost column. limit: on its sum over an episode, None where there is none."""
+    """A cost column. limit: the limit on its sum over an episode, None where there is none."""
 
     limit: Optional[float]  # type: ignore[assignment]
 
@@ -45,11 +45,11 @@ class Cost(_abi.CostInfo):
 
 
 class Field(_abi.FieldInfo):
-    """A run of observation entries, obs[:, field.slice], and the bounds that they keep; nan: none."""
+    """Consecutive entries of an observation, obs[:, field.slice], and their bounds; nan: none."""
 
     @property
     def slice(self) -> slice:
-        """Its entries of a row."""
+        """The slice of its entries in a row."""
         return slice(self.offset, self.offset + self.count)
 
     @property
@@ -70,7 +70,7 @@ class Camera(_abi.CameraInfo):
 
 
 class Shape(_abi.ShapeInfo):
-    """A part of what the scene is made of; kind is a redman.ShapeKind."""
+    """A shape of the scene; kind is a redman.ShapeKind."""
 
 
 class Joint(_abi.JointInfo):
@@ -90,7 +90,7 @@ def _records(kind: type[R], struct: type[ctypes.Structure], call: Callable[..., 
 
 
 def all_of(kind: type[R], struct: type[ctypes.Structure], call: Callable[..., int], *before: Any) -> list[R]:
-    """Records of all rows that call(*before, i, &struct) knows, which RANGE ends."""
+    """Records of all rows that call(*before, i, &struct) gives, until it returns RANGE."""
     out: list[R] = []
     row = sized(struct)
     while not call(*before, len(out), byref(row)):
@@ -99,7 +99,8 @@ def all_of(kind: type[R], struct: type[ctypes.Structure], call: Callable[..., in
 
 
 class Listed(Dict[str, R]):
-    """What there is, by name; also found by other names that the library knows, as an alias. NotFoundError offers the nearest."""
+    """A dict of what exists, by name; other names that the library knows, such as aliases, are found too. NotFoundError
+    offers the nearest name."""
 
     def __init__(self, rows: Iterable[R], called: Callable[[str], R]) -> None:
         super().__init__((getattr(row, "name"), row) for row in rows)
@@ -134,7 +135,7 @@ class TaskInfo(_abi.Task):
         return f"<Task {self.name}: {self.summary}>"
 
     def remove(self) -> None:
-        """Takes a task of your own, or of a .task file, out of this process; pools that have it keep it."""
+        """Removes a task of your own, or of a .task file, from this process; pools that have it keep it."""
         check(lib.rdm_task_destroy(self.number))
 
 
@@ -174,7 +175,7 @@ def find(call: Callable[..., int], name: str) -> int:
 
 
 def listed(at: Callable[[int], R], struct: type[ctypes.Structure], call: Callable[..., int], count: int) -> Iterator[R]:
-    """Records of the numbers below count that were not destroyed since: of those that are kept, the library is asked too."""
+    """Records of the numbers below count, without those that were destroyed; the library is asked for cached ones too."""
     row = sized(struct)
     for index in range(count):
         if call(index, byref(row)) == 0:
@@ -182,12 +183,12 @@ def listed(at: Callable[[int], R], struct: type[ctypes.Structure], call: Callabl
 
 
 def tasks() -> dict[str, TaskInfo]:
-    """All tasks by name; empty without the simulation half."""
+    """All tasks by name; empty in a build without simulation."""
     return Listed(listed(task_at, _abi.rdm_task, lib.rdm_task_at, lib.rdm_task_count()), task)
 
 
 def algos() -> dict[str, Algo]:
-    """All learners by name; empty without the learning half."""
+    """All learners by name; empty in a build without learning."""
     return Listed(map(algo_at, range(lib.rdm_algo_count())), algo)
 
 
@@ -197,8 +198,8 @@ def task(name: TaskName) -> TaskInfo:
 
 
 def task_name(task: TaskName) -> str:
-    """The name of a task that is given as its name, as TaskInfo, as a .task file, as its id in Gymnasium (redman/BallRun-v0), or as
-    the class of a task in Python, which is then registered."""
+    """The name of a task that is given by its name, as a TaskInfo, a .task file, its id in Gymnasium (redman/BallRun-v0), or
+    as the class of a task in Python, which is then registered."""
     if isinstance(task, TaskInfo):
         return task.name
     if isinstance(task, type) and hasattr(task, "register"):
@@ -211,7 +212,7 @@ def task_name(task: TaskName) -> str:
 
 
 def task_kept(task: TaskName) -> TaskName:
-    """What makes it again in another process: its class, its file, or its name."""
+    """What another process needs to make the task again: its class, its file, or its name."""
     name = task_name(task)
     if isinstance(task, type):
         return task
@@ -224,7 +225,7 @@ def algo(name: str) -> Algo:
 
 
 def options_of(call: Callable[..., int]) -> dict[str, Option]:
-    """All options by key that call(i, &row) knows."""
+    """All options by key that call(i, &row) gives."""
     return {option.key: option for option in all_of(Option, _abi.rdm_option_spec, call)}
 
 
@@ -234,7 +235,7 @@ def _shield_options() -> dict[str, Option]:
 
 
 def shield_options() -> dict[str, Option]:
-    """The options of a Shield by name, each with its help, default and bounds; empty without the simulation half."""
+    """The options of a Shield by name, each with its help, default and bounds; empty in a build without simulation."""
     return dict(_shield_options())
 
 
@@ -244,15 +245,15 @@ def _planner_options() -> dict[str, Option]:
 
 
 def planner_options() -> dict[str, Option]:
-    """The options of a Planner by name, each with its help, default and bounds; empty without the simulation half."""
+    """The options of a Planner by name, each with its help, default and bounds; empty in a build without simulation."""
     return dict(_planner_options())
 
 
 def features() -> _abi.Feature:
-    """The halves that this library has: Feature.SIM | Feature.LEARN | Feature.POLICY."""
+    """The parts that this library was built with: Feature.SIM | Feature.LEARN | Feature.POLICY."""
     return _abi.Feature(lib.rdm_features())
 
 
 def build() -> _abi.Build:
-    """Version and build of the library that runs."""
+    """Version and build of the loaded library."""
     return _abi.Build(filled(_abi.rdm_build, lib.rdm_build_info))

@@ -1,4 +1,4 @@
-"""What a failed call raises: redman.Error, by its code also the built-in exception that a caller would expect."""
+"""What a failed call raises: redman.Error, which is also the built-in exception that a caller would expect for its code."""
 from __future__ import annotations
 
 from ._abi import ResultCode
@@ -63,7 +63,7 @@ class UnsupportedError(Error, NotImplementedError):
 
 
 class PhysicsError(Error, ArithmeticError):
-    """The physics engine gave up where no world could be flagged."""
+    """The physics engine failed, and no single world could be flagged."""
 
     code = ResultCode.PHYSICS
 
@@ -75,17 +75,17 @@ class NotFoundError(Error, LookupError):
 
 
 class MissingFileError(NotFoundError, FileNotFoundError):
-    """A file that is not there."""
+    """A file that does not exist."""
 
 
 class CancelledError(Error, RuntimeError):
-    """Agent.cancel was called; the agent is good."""
+    """Agent.cancel was called; the agent can still be used."""
 
     code = ResultCode.CANCELLED
 
 
 class InternalError(Error, RuntimeError):
-    """A defect of redman."""
+    """A bug in redman."""
 
 
 _CLASS_OF = {kind.code: kind for kind in (

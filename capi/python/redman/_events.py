@@ -1,5 +1,5 @@
-"""A TensorBoard event file: what progress.csv says, row for row, as scalars under the names of its columns. The bytes are
-those that `redman train` writes for the same rows.
+"""A TensorBoard event file: the rows of progress.csv as scalars under the names of its columns. The bytes are those that
+`redman train` writes for the same rows.
 
 A record is its length, a masked CRC-32C of that, an Event of TensorBoard's event.proto, a masked CRC-32C of that.
 """
@@ -17,12 +17,12 @@ def file_name(unix_seconds: int) -> str:
 
 
 def head(unix_seconds: int) -> bytes:
-    """What the file begins with."""
+    """The beginning of the file."""
     return _record(_double(1, float(unix_seconds)) + _text(3, b"brain.Event:2"))
 
 
 def row(cells: Mapping[str, str], unix_seconds: int) -> bytes:
-    """A row of progress.csv, its cells as they are written there."""
+    """A row of progress.csv, with its cells as written there."""
     values = {name: float(text) for name, text in cells.items()}
     scalars = b"".join(_text(1, _text(1, name.encode()) + _key(2, 5) + struct.pack("<f", value))
                        for name, value in sorted(values.items()) if name not in _STEPS and abs(value) <= _MOST)

@@ -14,7 +14,7 @@ from ._names import nearest
 
 
 def _beside(path: Path) -> str:
-    """'; nearest is NAME' of what stands beside a file that is not there."""
+    """'; nearest is NAME' of the files beside one that does not exist."""
     try:
         with os.scandir(path.parent) as entries:
             names = [entry.name for entry in itertools.islice(entries, 500)]
@@ -36,7 +36,7 @@ MOST_JSON = 1 << 20
 
 
 def read_bytes(path: Union[str, os.PathLike[str]], most: int) -> bytes:
-    """The bytes of a regular file, which is not waited for; OSError for anything else, or for a longer file."""
+    """The bytes of a regular file; OSError for anything else (a pipe is never waited for) or a longer file."""
     descriptor = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     try:
         said = os.fstat(descriptor)
@@ -51,7 +51,7 @@ def read_bytes(path: Union[str, os.PathLike[str]], most: int) -> bytes:
 
 
 def read_whole(path: Union[str, os.PathLike[str]], what: str, most: int = MOST_BYTES) -> bytes:
-    """The bytes of a file; what: whose they are, for the text of an error."""
+    """The bytes of a file; what: the kind of file, for error texts."""
     try:
         return read_bytes(path, most)
     except FileNotFoundError:
@@ -61,7 +61,7 @@ def read_whole(path: Union[str, os.PathLike[str]], what: str, most: int = MOST_B
 
 
 def write_whole(path: Union[str, os.PathLike[str]], data: bytes, what: str) -> None:
-    """Writes a file, or leaves what was there: under another name first."""
+    """Writes a file entirely or leaves the old one: writes under another name first."""
     temporary = Path(f"{os.fspath(path)}.part")
     try:
         temporary.write_bytes(data)

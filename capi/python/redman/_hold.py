@@ -1,7 +1,8 @@
-"""Decisions that are taken for steps: one of `Policy.act` is written to worlds that step faster than the policy decides.
+"""Detects decisions that are mistaken for steps: an action of `Policy.act` is written to worlds that step faster than the
+policy decides.
 
-What is handed on as an array cannot be refused, for a policy may be asked at every step on purpose; but it is said, once
-for each pool, where the same array that `act` returned is written in two steps of one decision.
+Such a use cannot be refused, since a policy may be called at every step on purpose. A warning is given once for each pool,
+when arrays that `act` returned are written in two steps of one decision.
 """
 from __future__ import annotations
 
@@ -14,11 +15,11 @@ from ._rows import Array
 
 
 class HoldWarning(UserWarning):
-    """Actions of a policy are not held as long as it decides, or are not about the center of the worlds."""
+    """Actions of a policy are not held as long as its decisions last, or do not refer to the center of the worlds."""
 
 
 def warn(text: str) -> None:
-    """Where this package was called from."""
+    """Warns at the line that called this package."""
     level, frame = 1, sys._getframe(0)
     while frame.f_back is not None and frame.f_globals.get("__name__", "").split(".")[0] == __package__:
         level, frame = level + 1, frame.f_back
@@ -38,14 +39,15 @@ LAST = _Decision()
 
 
 class Watch:
-    """Of one pool: when it took the last decision that came straight from a policy."""
+    """For one pool: the step at which it received the last decision that came directly from a policy."""
 
     def __init__(self) -> None:
         self._at, self._number = -1, 0
         self._said = False
 
     def look(self, array: Any, step: int, length: int, centered: bool = False) -> None:
-        """Before control step `step` of world 0's episode (-1: unknown), in worlds whose step has `length` control steps."""
+        """Called before control step `step` of world 0's episode (-1: unknown), in worlds whose step has `length` control
+        steps."""
         if LAST.array is None or self._said or LAST.array() is not array:
             return
         if LAST.number == self._number:  # held

@@ -17,7 +17,7 @@ Struct = TypeVar("Struct", bound=ctypes.Structure)
 
 
 def _candidates() -> list[str]:
-    """Where the library may be, the most particular place first."""
+    """Where the library may be, the most specific place first."""
     named = os.environ.get("REDMAN_LIBRARY")
     if named:
         return [named]
@@ -74,7 +74,7 @@ def text(value: bytes | None) -> str:
 
 
 def encoded(value: str | os.PathLike[str]) -> bytes:
-    """A text or a path for the library."""
+    """A text or a path, encoded for the library."""
     try:
         raw = os.fsencode(value)
     except TypeError:
@@ -103,12 +103,12 @@ def failure(code: int) -> Error:
 
 
 def raise_kept() -> None:
-    """Where a call was OK, though a function of Python raised in it: that ended an episode alone."""
+    """Raises what a Python function raised during a call that succeeded, since it ended only an episode."""
     raise _of_python(ArgumentError())
 
 
 def _of_python(error: Error) -> Error:
-    """The error with what Python raised as its cause; the first counts."""
+    """The error, with the first exception that Python raised as its cause."""
     name, cause = raised[0]
     raised.clear()
     if not isinstance(cause, Exception):  # Ctrl-C
@@ -144,7 +144,7 @@ def whole(value: Any, name: str, low: int, high: int) -> int:
 
 
 def int32(value: Any, name: str) -> int:
-    """An integer argument; ctypes alone would cut off what does not fit."""
+    """An integer argument; ctypes alone would truncate numbers that do not fit."""
     return whole(value, name, -(1 << 31), (1 << 31) - 1)
 
 
@@ -168,7 +168,7 @@ def filled(kind: type[Struct], call: Callable[..., int], *before: Any) -> Struct
 
 
 def bytes_of(call: Callable[..., int], *before: Any) -> bytes:
-    """The bytes that call(*before, bytes, capacity, &size) writes, asked for their size first."""
+    """The bytes that call(*before, bytes, capacity, &size) writes; asks for their size first."""
     size = c_size_t()
     check(call(*before, None, 0, byref(size)))
     raw = ctypes.create_string_buffer(max(size.value, 1))
@@ -177,7 +177,7 @@ def bytes_of(call: Callable[..., int], *before: Any) -> bytes:
 
 
 class Handle:
-    """Owns what a create function made: ends it when the last one who needs it goes."""
+    """Owns what a create function made, and destroys it when nothing needs it any more."""
 
     __slots__ = ("value", "_destroy", "__weakref__")
 

@@ -1,4 +1,4 @@
-"""A number for each cost: limits and budgets, as they are said."""
+"""Limits and budgets: a number for each cost, from the forms in which they may be given."""
 from __future__ import annotations
 
 import math
@@ -14,7 +14,8 @@ CostLimits = Union[None, float, Sequence[Optional[float]], Mapping[str, Optional
 
 def each_cost(wanted: CostLimits, usual: Optional[Iterable[float]], columns: Sequence[str],
               name: str) -> Optional[list[float]]:
-    """A limit for each column, below 0 for none, laid over the usual ones; None where there are neither. name: of the argument."""
+    """A limit for each column, below 0 for none; what is given overrides the usual ones. None where there are neither. name:
+    of the argument."""
     def number(limit: Optional[float]) -> float:
         if limit is None:
             return -1.0

@@ -1,4 +1,4 @@
-"""Map: what is occupied, free and unknown in space. Experimental, as redman/map.h is."""
+"""Map: what is occupied, free and unknown in space. Experimental, like redman/map.h."""
 from __future__ import annotations
 
 import ctypes
@@ -32,15 +32,15 @@ def _points(points: Any, name: str = "points") -> Array:
 
 
 class Map:
-    """An occupancy map made of scans: point clouds of your own, or looks of a pool's cameras.
+    """An occupancy map made from scans: point clouds of your own, or scans by a pool's cameras.
 
         m = redman.Map(resolution=0.02)
         m.scan(pool, env=0, camera="top", width=96, height=96)
         m.insert(origin, points)
         m.query(points)                     # probability of occupied, -1 where unknown
 
-    Points are in m. More keywords: memory (bytes, 64 MiB), max_range (m, 4; 0: none), hit,
-    miss, low, high, threshold. dropped: voxels that it left out so far, since it was full.
+    Points are in m. More keywords: memory (bytes, 64 MiB), max_range (m, 4; 0: no limit), hit, miss, low, high, threshold.
+    dropped: voxels left out so far because the map was full.
     """
 
     def __init__(self, resolution: float = 0.02, **config: float) -> None:
@@ -61,7 +61,8 @@ class Map:
         self._memory, self._max_range, self.dropped = int(struct.memory), float(struct.max_range), 0
 
     def insert(self, origin: Sequence[float], points: Any) -> int:
-        """One scan: rays from origin to points. Returns how many voxels a full map left out, and warns where it did."""
+        """Adds one scan: rays from origin to points. Returns how many voxels a full map left out, and warns if there were
+        any."""
         rows, at = _points(points), self._given("rdm_map_insert", "origin", origin)
         if "max_range" not in self._config:
             far = int(np.count_nonzero(np.linalg.norm(rows - at, axis=1) > self._max_range))
@@ -76,8 +77,8 @@ class Map:
 
     def scan(self, pool: Pool, env: int = 0, camera: Optional[str] = None, width: int = 96, height: int = 96,
              skip: Sequence[int] = ()) -> int:
-        """One scan by a camera of the pool's task; rays that end on a shape in skip are left out. Returns how many voxels a
-        full map left out, 0 in one that is large enough, and warns where it did."""
+        """Adds one scan by a camera of the pool's task; rays that end on a shape in skip are left out. Returns how many
+        voxels a full map left out (0 in one that is large enough), and warns if there were any."""
         left = np.ascontiguousarray(skip, np.int32)
         dropped = c_uint64()
         name = next(iter(pool.cameras), "") if camera is None else camera
@@ -88,7 +89,7 @@ class Map:
         return self._left_out(dropped.value)
 
     def _left_out(self, dropped: int) -> int:
-        """Says that the map is full: what is not in it is no free space."""
+        """Warns that the map is full: space that is not in it is not free space."""
         self.dropped += dropped
         if dropped:
             warnings.warn(f"a full map left out {dropped} voxels: raise memory (it has {self._memory} bytes) or resolution, "
@@ -103,7 +104,7 @@ class Map:
         return out
 
     def box(self, low: Sequence[float], high: Sequence[float]) -> Array:
-        """Occupied voxels that meet the box: rows of centre [3] and side, m."""
+        """Occupied voxels that overlap the box: rows of centre [3] and side, m."""
         corners = [self._given("rdm_map_get_voxels", name, value) for name, value in (("low", low), ("high", high))]
         out = np.empty(0, np.dtype(_abi.rdm_voxel))
         count = c_size_t()
@@ -115,7 +116,7 @@ class Map:
             out = np.empty(count.value, out.dtype)
 
     def meets(self, pose: Sequence[float], half: Sequence[float]) -> bool:
-        """Whether an occupied voxel meets the turned box of half sizes half: pose is position and quaternion."""
+        """Whether an occupied voxel overlaps the box of half sizes half at pose, a position and quaternion."""
         meets = c_int32()
         self._check(lib.rdm_map_meets(self._open(), self._given("rdm_map_meets", "pose", pose).ctypes.data,
                                       self._given("rdm_map_meets", "half", half).ctypes.data, byref(meets)))
@@ -123,7 +124,7 @@ class Map:
 
     def raycast(self, origin: Sequence[float], direction: Sequence[float], range: float,
                 through_unknown: bool = False) -> Optional[FloatArray]:
-        """Where the ray enters the first occupied voxel within range, m; None: nowhere."""
+        """The point where the ray enters the first occupied voxel within range, m, or None."""
         rays = [self._given("rdm_map_raycast", name, value)
                 for name, value in (("origin", origin), ("direction", direction))]
         hit = np.empty(3, np.float32)
@@ -133,14 +134,14 @@ class Map:
         return hit if found.value else None
 
     def distance(self, points: Any, most: float) -> FloatArray:
-        """[count] distance from each point to the nearest occupied voxel, m; most where none is so near."""
+        """[count] distance from each point to the nearest occupied voxel, m; `most` where none is that near."""
         rows = _points(points)
         out = np.empty(len(rows), np.float32)
         self._check(lib.rdm_map_get_distances(self._open(), rows.ctypes.data, len(rows), most, out.ctypes.data))
         return out
 
     def grid(self, pose: Sequence[float], n: Sequence[int], side: float) -> npt.NDArray[np.int8]:
-        """[n0][n1][n2] cells of side m about pose: 1 occupied, 0 free, -1 unknown."""
+        """[n0][n1][n2] cells of `side` m around pose: 1 occupied, 0 free, -1 unknown."""
         counts = self._given("rdm_map_get_grid", "n", n)
         fits = all(1 <= count <= 1024 for count in counts)  # if not, the call says so
         out = np.empty(tuple(counts) if fits else 0, np.int8)
@@ -149,7 +150,7 @@ class Map:
         return out
 
     def clear(self) -> None:
-        """All is unknown again."""
+        """Makes everything unknown again."""
         with self._lock:
             self._check(lib.rdm_map_clear(self._m))
 
@@ -165,12 +166,12 @@ class Map:
         return bytes_of(lib.rdm_map_write, self._open(), _FORMATS[format])
 
     def load(self, data: bytes) -> None:
-        """What a file's bytes hold takes the place of what the map holds."""
+        """Replaces the contents of the map by those of a file's bytes."""
         with self._lock:
             self._check(lib.rdm_map_read(self._m, bytes(data), len(data)))
 
     def save_file(self, path: Union[str, os.PathLike[str]]) -> None:
-        """Writes .bt or .ot, by its ending, whole or not at all."""
+        """Writes a .bt or .ot file, by its ending, entirely or not at all."""
         self._check(lib.rdm_map_write_file(self._open(), encoded(path)))
 
     def load_file(self, path: Union[str, os.PathLike[str]]) -> None:
@@ -179,7 +180,7 @@ class Map:
             self._check(lib.rdm_map_read_file(self._m, encoded(path)))
 
     def close(self) -> None:
-        """Ends the map. A second call does nothing."""
+        """Destroys the map. A second call does nothing."""
         with self._lock:
             self._handle = None
             self._m = None
@@ -214,7 +215,7 @@ class Map:
 
 
 def sample_furthest(points: Any, wanted: int, start: int = 0) -> npt.NDArray[np.int32]:
-    """Numbers of `wanted` of points [count][3] that lie furthest from each other, in order of choice."""
+    """Farthest point sampling: the numbers of `wanted` of points [count][3], each the farthest from all chosen before."""
     rows = _points(points)
     wanted, start = int32(wanted, "wanted"), int32(start, "start")
     chosen = np.empty(max(wanted, 0), np.int32)

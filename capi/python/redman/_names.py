@@ -1,4 +1,4 @@
-"""Names that are not ours: the nearest that is, or what to write instead."""
+"""Unknown names: the nearest known one, or what to write instead."""
 from __future__ import annotations
 
 import ctypes
@@ -22,13 +22,13 @@ WORDS = {
 
 
 def meant(name: str, known: Iterable[str]) -> str:
-    """That of the known names which another library's word stands for; "" for none."""
+    """The known name that another library's word stands for; "" for none."""
     own = WORDS.get(name.lower().replace("-", "_"), "")
     return own if own in set(known) else ""
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
-    """'; nearest is NAME', or several, or "" where none is near: as the library's texts say it."""
+    """'; nearest is NAME', or several, or "" where none is near, as in the library's error texts."""
     names = sorted(known)
     if own := meant(name, names):
         return f"; nearest is {own}"
@@ -39,9 +39,9 @@ def nearest(name: str, known: Iterable[str]) -> str:
 
 def keywords(*, aliases: Mapping[str, str] = {}, hints: Mapping[str, str] = {},
              options: bool = False) -> Callable[[Function], Function]:
-    """A function that also takes the aliases of its arguments, and says of others what to write instead.
+    """A function that also accepts aliases of its arguments; for other unknown ones, the error says what to write instead.
 
-    options: what names an option of a task, an algorithm, a shield or a planner is laid into the argument of that name.
+    options: the name of the argument that keywords which are options of a task, an algorithm, a shield or a planner go into.
     """
     def wrap(function: Function) -> Function:
         names = list(inspect.signature(function).parameters)
@@ -85,7 +85,7 @@ def _advice(key: str, known: frozenset[str], hints: Mapping[str, str]) -> str:
 
 
 def _option(key: str) -> str:
-    """The option of a task or an algorithm that a word stands for, "" for none."""
+    """The option of a task or an algorithm that a word stands for; "" for none."""
     from . import _discovery
     every = {name for algo in _discovery.algos().values() for name in algo.options}
     every |= {*_discovery.shield_options(), *_discovery.planner_options()}
@@ -97,7 +97,7 @@ def _option(key: str) -> str:
 
 
 class Hinted:
-    """An object that says of attributes which it has not what to write instead."""
+    """An object whose error for an unknown attribute says what to write instead."""
 
     _hints: ClassVar[Mapping[str, str]] = {}
 
@@ -122,13 +122,13 @@ _MODULE_HINTS = {
 
 
 def module_hint(name: str, known: Iterable[str]) -> str:
-    """Of a name that the module does not have."""
+    """The error for a name that the module does not have."""
     said = _MODULE_HINTS.get(name) or f"there is no such name{nearest(name, known)}"
     return f"redman.{name}: {said}"
 
 
 def moved(names: Mapping[str, Any], public: Iterable[str]) -> None:
-    """Classes and functions of private modules say that they are of the package."""
+    """Makes classes and functions of private modules appear as members of the package."""
     for name in public:
         thing = names[name]
         if isinstance(thing, (type, type(moved))) and str(thing.__module__).startswith("redman._"):

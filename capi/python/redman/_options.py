@@ -25,7 +25,7 @@ Kinds = Mapping[str, int]  # OptionKind of each key; noise.right.tip_force is on
 
 
 def shown(key: str, value: Any, kinds: Kinds = {}) -> str:
-    """A value as the library reads it, exact: true, 0.1, 16, egg, 0.7..1.3, 64,64, rgb+depth."""
+    """A value in the text form that the library reads, exact: true, 0.1, 16, egg, 0.7..1.3, 64,64, rgb+depth."""
     if isinstance(value, str):
         return value
     if isinstance(value, (bool, np.bool_)):
@@ -64,7 +64,7 @@ def settings_of(options: Options, kinds: Kinds = {}) -> bytes:
 
 
 def option_array(options: Options, kinds: Kinds = {}) -> Any:
-    """[len(options)] rdm_option; it holds its texts."""
+    """[len(options)] rdm_option, which keeps its texts alive."""
     array = (_abi.rdm_option * len(options))()
     for row, (key, value) in zip(array, options.items()):
         row.key, row.text = encoded(key), encoded(shown(key, value, kinds))
@@ -82,7 +82,7 @@ def read_settings(call: Callable[..., int], handle: Any, kinds: Mapping[str, int
 
 
 def kind_of(key: str, kinds: Kinds) -> Optional[int]:
-    """What an option's value is; None where the key is not known."""
+    """The kind of an option's value; None where the key is not known."""
     folded = key.lower().replace("-", "_")
     for word in (key, folded, key.split(".", 1)[0] + ".FIELD", folded.split(".", 1)[0] + ".FIELD"):
         if word in kinds:
@@ -91,7 +91,7 @@ def kind_of(key: str, kinds: Kinds) -> Optional[int]:
 
 
 def value_of(kind: Optional[int], said: str) -> Value:
-    """The text of an option as its kind says."""
+    """The text of an option as a value of its kind."""
     if kind == OptionKind.TEXT:
         return said
     if kind == OptionKind.FLAG:
@@ -102,7 +102,7 @@ def value_of(kind: Optional[int], said: str) -> Value:
 
 
 def default_of(info: _abi.rdm_option_spec) -> Value:
-    """The default of an option as its kind says."""
+    """The default of an option as a value of its kind."""
     if info.kind == OptionKind.TEXT:
         return text(info.text)
     if info.kind == OptionKind.FLAG:
@@ -113,7 +113,7 @@ def default_of(info: _abi.rdm_option_spec) -> Value:
 
 
 def laid(rows: Iterable[_abi.rdm_option]) -> dict[str, Value]:
-    """Rows in the order in which they are laid over each other: the last of a key counts, and where it stands."""
+    """Merges rows in order: of several with the same key, the last one counts, and keeps its place."""
     out: dict[str, Value] = {}
     for row in rows:
         key = text(row.key)
@@ -123,7 +123,7 @@ def laid(rows: Iterable[_abi.rdm_option]) -> dict[str, Value]:
 
 
 def _plain(said: str) -> Value:
-    """A number where the text is one."""
+    """The text as a number, if it is one."""
     try:
         number = float(said)
     except ValueError:

@@ -37,8 +37,8 @@ Player = Union[Policy, str, "os.PathLike[str]", "Run", "Agent", Function, Any]
 
 
 def _cvar(samples: Array) -> Array:
-    """Conditional value at risk of each row [resamples][episodes]...: the mean of the largest tenth, where the episode on its
-    edge counts with the part of it that is within."""
+    """Conditional value at risk of each row [resamples][episodes]...: the mean of the largest tenth; the episode on the edge
+    counts in part."""
     tenth = samples.shape[1] / 10
     weights = np.clip(tenth - np.arange(samples.shape[1]), 0, 1)
     largest: Array = np.tensordot(-np.sort(-samples, axis=1), weights / tenth, (1, 0))
@@ -51,7 +51,7 @@ def _mean(samples: Array) -> Array:
 
 
 def _stderr(values: Array) -> Any:
-    """Of the mean of rows; NaN of less than two."""
+    """Standard error of the mean of rows; NaN for less than two."""
     return values.std(axis=0, ddof=1) / np.sqrt(len(values)) if len(values) > 1 else np.full(values.shape[1:], np.nan)
 
 
@@ -66,10 +66,10 @@ _QUANTILES = (0.5, 0.9, 0.99)
 
 @dataclass(frozen=True)
 class Evaluation:
-    """Means over whole episodes; costs are a number for each column.
+    """Means over whole episodes; costs have a number for each column.
 
-    An episode that diverged, got a bad action or whose task failed is a violation and no success; what it summed up to
-    then is no measurement: all else is of the other episodes, NaN where there are none."""
+    An episode that diverged, got a bad action or whose task failed counts as a violation and not as a success. Its sums are
+    no valid measurement: all other numbers are over the remaining episodes, NaN where there are none."""
 
     episodes: int
     return_mean: float
@@ -98,7 +98,7 @@ class Evaluation:
 
     @property
     def feasible(self) -> bool:
-        """No mean cost is above its limit, and every episode came to an end of its own."""
+        """Whether no mean cost is above its limit and every episode was sound."""
         if self.diverged or self.bad_actions or self.task_failed:
             return False
         return all(limit is None or mean <= limit for mean, limit in zip(self.cost_mean, self.cost_limits))
@@ -110,13 +110,14 @@ class Evaluation:
 
     @property
     def cost_stderr(self) -> list[float]:
-        """Of cost_mean, likewise."""
+        """Standard error of cost_mean, likewise."""
         return list(map(float, _stderr(self._sound(self.costs))))
 
     @property
     def success_stderr(self) -> float:
-        """Of success_rate p, likewise: sqrt(p (1 - p) / (n - 1)). Where all n episodes are alike it is 0, and the rate of the
-        other kind may still be 3 / n (Hanley, Lippman-Hand: If Nothing Goes Wrong, Is Everything All Right?, JAMA 249, 1983)."""
+        """Standard error of success_rate p, likewise: sqrt(p (1 - p) / (n - 1)). Where all n episodes have the same outcome
+        it is 0, and yet the rate of the other outcome may be up to 3 / n (Hanley, Lippman-Hand: If Nothing Goes Wrong, Is
+        Everything All Right?, JAMA 249, 1983)."""
         return float(_stderr(self.successes))
 
     @property
@@ -131,15 +132,15 @@ class Evaluation:
 
             CVaR = 1 / k  sum of the k largest costs, k = n / 10; where k is not whole, the next one counts with the rest of k
 
-        (Rockafellar, Uryasev: Conditional Value-at-Risk for General Loss Distributions, J. Banking & Finance 26, 2002). Of 10
-        episodes or fewer it is the largest cost."""
+        (Rockafellar, Uryasev: Conditional Value-at-Risk for General Loss Distributions, J. Banking & Finance 26, 2002). With
+        10 episodes or fewer it is the largest cost."""
         costs = self._sound(self.costs)
         return list(map(float, _cvar(costs[None])[0])) if len(costs) else [float("nan")] * costs.shape[1]
 
     @property
     def cost_quantiles(self) -> dict[float, list[float]]:
-        """The 0.5, 0.9 and 0.99 quantile of each cost, between two episodes by a straight line (definition 7 of Hyndman, Fan:
-        Sample Quantiles in Statistical Packages, The American Statistician 50, 1996)."""
+        """The 0.5, 0.9 and 0.99 quantile of each cost, linear between two episodes (definition 7 of Hyndman, Fan: Sample
+        Quantiles in Statistical Packages, The American Statistician 50, 1996)."""
         costs = self._sound(self.costs)
         if not len(costs):
             return {q: [float("nan")] * costs.shape[1] for q in _QUANTILES}
@@ -149,10 +150,10 @@ class Evaluation:
         """The interval (low, high) of return_mean, return_iqm, length_mean, success_rate or violation_rate, and one for each
         column of cost_mean or cost_cvar.
 
-        Episodes are drawn with replacement, as many as there are, and the quantiles (1 - level) / 2 and (1 + level) / 2 of the
-        resamples' values are its ends (percentile bootstrap, Efron, Tibshirani: An Introduction to the Bootstrap, 1993, chapter
-        13): 10,000 resamples of a fixed seed. It is of this one policy: of an algorithm redman.stats.interval over several runs
-        says more. NaN of less than two episodes."""
+        Episodes are drawn with replacement, as many as there are, and the quantiles (1 - level) / 2 and (1 + level) / 2 of
+        the resamples' values are its ends (percentile bootstrap, Efron, Tibshirani: An Introduction to the Bootstrap, 1993,
+        chapter 13): 10,000 resamples of a fixed seed. It is about this one policy: for an algorithm, use
+        redman.stats.interval over several runs. NaN for less than two episodes."""
         if stat not in _STATISTICS:
             raise ArgumentError(f"interval: {stat!r} is none of {', '.join(_STATISTICS)}{nearest(str(stat), _STATISTICS)}")
         rows_of, statistic = _STATISTICS[stat]
@@ -165,11 +166,11 @@ class Evaluation:
         return pairs if rows.ndim > 1 else pairs[0]
 
     def _sound(self, rows: Array) -> Array:
-        """Those of episodes that were a measurement."""
+        """The episodes whose sums are valid."""
         return rows[~np.isnan(self.returns)]
 
     def _violations(self) -> Array:
-        """[episodes] which are over a limit."""
+        """[episodes] whether each is over a limit."""
         limits = [np.inf if limit is None else limit for limit in self.cost_limits]
         over: Array = np.isnan(self.returns) | (self.costs > limits).any(axis=1)
         return over
@@ -243,7 +244,7 @@ class _Plays:
 
 
 def limits_of(pool: Pool, wanted: Union[None, Sequence[Optional[float]], Mapping[str, float]]) -> list[Optional[float]]:
-    """The wanted limits, of each column or by name; or the task's own."""
+    """The given limits, for each column or by name; else the task's own."""
     if isinstance(wanted, Mapping):
         return [wanted.get(name) for name in pool.costs]
     if wanted is not None:
@@ -254,9 +255,9 @@ def limits_of(pool: Pool, wanted: Union[None, Sequence[Optional[float]], Mapping
 def play(pool: Pool, player: Any, episodes: int, magnitudes: bool = False, action_repeat: Optional[int] = None,
          center: Optional[FloatArray] = None, shield: Optional[Shield] = None) -> list[dict[str, Any]]:
     """Each episode's return, costs, length, fall and success; the pool's autoreset is off, and it was just reset. With
-    magnitudes costs are sums of cost_raw where it is above 0, as an agent with cost_signal=raw learns them; the pool
-    then takes single control steps, for it shows cost_raw of the last one alone. action_repeat: control steps that a
-    baseline's or a function's actions last, None: a step of the pool. shield looks at each decision."""
+    magnitudes, costs are sums of cost_raw where it is above 0, as an agent with cost_signal=raw learns them; the pool then
+    makes single control steps, since it shows only cost_raw of the last one. action_repeat: control steps that an action of
+    a baseline or a function lasts, None: one step of the pool. shield checks each decision."""
     if magnitudes and pool.spec.action_repeat != 1:
         raise ArgumentError(f"magnitudes: cost_raw is shown for each step of the pool, and one has "
                             f"{pool.spec.action_repeat} control steps")
@@ -298,7 +299,7 @@ def play(pool: Pool, player: Any, episodes: int, magnitudes: bool = False, actio
 
 @dataclass
 class _Judged:
-    """Who plays, and what is known of how it is to be judged."""
+    """The player, and what is known about how to evaluate it."""
 
     player: Any
     origin: Optional[Origin] = None
@@ -344,7 +345,7 @@ def _named(word: Union[str, os.PathLike[str]], task: Optional[str]) -> Union[Pol
 
 
 def _of_model(model: Any) -> _Judged:
-    """A model of another library, and how the environment that it has stands to its pool."""
+    """A model of another library, and how its environment relates to its pool."""
     pool, worlds = worlds_of(getattr(model, "get_env", lambda: None)())
     if pool is None or worlds is None:
         return _Judged(model)
@@ -366,17 +367,17 @@ def evaluate(player: Player, task: Optional[TaskName] = None, episodes: int = 10
     player: a Policy, a Run, a run folder or policy file, an Agent, "trained" (the policy that comes with the task), a baseline
     ("zero", "hold", "random"), a function of rows obs [num_envs][obs_dim], or a model with Stable-Baselines3's predict.
 
-    A policy that comes from a run brings the run's task, options, limits and cost signal, as in `redman eval --policy
-    FOLDER`; what is said here is laid over them. A model that has an environment of redman.sb3 brings that one's task,
-    options, action_repeat and center, and its VecNormalize. For functions and other models say what they learned with:
-    action_repeat, the control steps that an action lasts ("task": a decision of the task's own learner; a policy of redman
-    holds by itself), and center, what an action of 0 does ("initial", or [action_dim]).
+    For a policy that comes from a run, the run's task, options, limits and cost signal are used, as in `redman eval --policy
+    FOLDER`; arguments override them. For a model that has an environment of redman.sb3, the task, options, action_repeat,
+    center and VecNormalize of that environment are used. For functions and other models, say what they learned with:
+    action_repeat, the control steps that an action lasts ("task": as long as a decision of the task's own learner; policies
+    of redman hold their actions themselves), and center, what an action of 0 does ("initial", or [action_dim]).
 
-    With magnitudes costs are sums of cost_raw where it is above 0, as an agent with cost_signal=raw learns them.
+    With magnitudes, costs are sums of cost_raw where it is above 0, as an agent with cost_signal=raw learns them.
 
-    shield puts every decision under a redman.Shield: True, or a dict of its options, budgets, seed and threads. Its first
-    backup is shield_policy, or the policy itself. A world in which nothing is clean is a StateError, which
-    shield={"unproven": "least"} makes a count of violating_steps.
+    shield: a redman.Shield checks every decision; True, or a dict of its options, budgets, seed and threads. Its first
+    backup is shield_policy, or the policy itself. When nothing keeps the budgets in a world, StateError is raised; with
+    shield={"unproven": "least"} such steps are counted in violating_steps instead.
     """
     if episodes < 1:
         raise ArgumentError("episodes: 1 or more")
@@ -432,7 +433,7 @@ def singly(options: Mapping[str, Any]) -> dict[str, Any]:
 
 def summary(played: Sequence[dict[str, Any]], limits: Sequence[Optional[float]], violating_steps: int,
             **shielded: int) -> Evaluation:
-    """Means of episodes, with a warning where worlds went wrong. shielded: decisions and interventions."""
+    """Means over episodes, with a warning where worlds failed. shielded: decisions and interventions."""
     counts = {name: sum(episode[name] for episode in played) for name in _STEP_FLAGS}
     counts.update({name: sum(episode["status"] & bit != 0 for episode in played) for name, bit in _END_FLAGS.items()})
     if any(counts.values()):
@@ -473,8 +474,8 @@ def summary(played: Sequence[dict[str, Any]], limits: Sequence[Optional[float]],
 
 
 def strip(policy: Policy, frames: int = 6, width: int = 240, height: int = 180) -> Optional[bytes]:
-    """A PNG of moments of an episode, side by side, with the options of the policy's run; None where the task cannot be made
-    or shown."""
+    """A PNG of moments of an episode, side by side, with the options of the policy's run; None where the task cannot be
+    created or drawn."""
     if not policy.info.task:
         return None
     try:

@@ -30,7 +30,7 @@ _MAGIC = b"RDMPOLIC"
 
 @dataclass(frozen=True)
 class Origin:
-    """The run that a policy comes from: what it is to be judged by."""
+    """The run that a policy comes from, by whose settings it is evaluated."""
 
     task: str
     options: Mapping[str, Value] = field(default_factory=dict)  # of the task
@@ -40,7 +40,7 @@ class Origin:
 
     @classmethod
     def of_folder(cls, folder: Path) -> Optional[Origin]:
-        """Of a run folder's config.json; None where there is none."""
+        """The origin from a run folder's config.json; None where there is none."""
         try:
             said = json.loads(read_bytes(folder / "config.json", MOST_JSON))
             own = {member: said[member] for member in ("task", "task_file", "robot_files", "object_files") if member in said}
@@ -70,9 +70,9 @@ class Policy(Hinted):
         actor = policy.actor(pool)                         # or of an environment
         pool.step(actor())
 
-    A policy decides every policy.info.action_repeat control steps; an actor holds its actions between. act, and calling the
-    policy, are one decision each, and the caller holds the action. origin is what its run folder knows: task, options,
-    limits; evaluate and a notebook's picture use them.
+    A policy decides every policy.info.action_repeat control steps; an actor holds its actions in between. act, and calling
+    the policy, make one decision each, and the caller must hold the action. origin is what its run folder says: task,
+    options, limits; evaluate and a notebook's picture use them.
     """
 
     _hints = {
@@ -93,8 +93,8 @@ class Policy(Hinted):
 
     @classmethod
     def load(cls, source: Union[str, os.PathLike[str], bytes, bytearray, memoryview]) -> Policy:
-        """Of a policy file, of a run folder's policy.rdm, or of the bytes of a file. A file in a run folder brings what the run
-        knows (origin); a task, robots and objects of its own are loaded as the folder has them."""
+        """Loads a policy file, a run folder's policy.rdm, or the bytes of a file. For a file in a run folder, origin is set
+        from the run, and the run's own task, robots and objects are loaded from the folder."""
         if isinstance(source, (bytes, bytearray, memoryview)):
             return cls(bytes(source))
         path = Path(source)
@@ -109,7 +109,7 @@ class Policy(Hinted):
 
     @classmethod
     def trained(cls, task: _discovery.TaskName) -> Policy:
-        """The bundled policy of a task: the one of `redman eval --policy trained`."""
+        """The bundled policy of a task, as in `redman eval --policy trained`."""
         name = _discovery.task(task).name
         for folder in policy_folders():
             if (folder / f"{name}.rdm").is_file():
@@ -117,7 +117,7 @@ class Policy(Hinted):
         raise MissingFileError(f"policy of {name}: none in " + ", ".join(str(folder) for folder in policy_folders()))
 
     def save(self, path: Union[str, os.PathLike[str]]) -> None:
-        """Writes the policy file, whole or not at all."""
+        """Writes the policy file, entirely or not at all."""
         write_whole(path, self._bytes, "policy")
 
     def export(self, path: Union[str, os.PathLike[str]], *, name: Optional[str] = None, int8: bool = False) -> None:
@@ -135,10 +135,10 @@ class Policy(Hinted):
             point_color: Any = None) -> FloatArray:
         """One decision: clip(mean + std noise, -1, 1) for one observation [obs_dim] or rows [n][obs_dim]; noise None: the mean.
 
-        It is to be held for info.action_repeat control steps: actor() does that, and is what plays a pool or an environment.
-        pool.step(policy.act(pool.obs)) at every step is another policy, and a HoldWarning says so.
-        A policy that reads points takes them [n][num_points][3] too, where it has num_point_classes their classes, and
-        where it reads colours (point_color) these too, as [n][num_points][3], 0 to 255.
+        Hold it for info.action_repeat control steps; in a pool or an environment, actor() does that.
+        pool.step(policy.act(pool.obs)) at every step makes a different policy of it, and a HoldWarning says so. A policy
+        that reads points needs them too [n][num_points][3], with num_point_classes their classes, and where it reads colours
+        (point_color) these, as [n][num_points][3], 0 to 255.
         """
         rows_of = _abi.FUNCTIONS["rdm_policy_act"].rows
         observed = np.asarray(obs)
@@ -184,7 +184,7 @@ class Policy(Hinted):
         return action, mean
 
     def novelty(self, obs: Any) -> Any:
-        """How far an observation [obs_dim], or rows [n][obs_dim], are from those that it learned on: a float, or [n].
+        """How far an observation [obs_dim], or rows [n][obs_dim], are from those of training: a float, or [n].
 
         About 1 is the most that training saw, 2 is far from it. UnsupportedError where info.novelty is 0.
         """
@@ -201,21 +201,21 @@ class Policy(Hinted):
 
     def actor(self, where: Any = None, *, num_envs: Optional[int] = None, action_repeat: int = 1, center: Any = None,
               stochastic: bool = False, seed: int = 0) -> Actor:
-        """What plays this policy in a pool, or in an environment of redman.gym, sb3, safety or omnisafe: an Actor.
+        """An Actor that plays this policy in a pool, or in an environment of redman.gym, sb3, safety or omnisafe.
 
-        For worlds of another kind: their number, control steps of one of their steps, and the center that they add to actions.
-        stochastic samples, with noise of the seed that is correlated as in training.
+        For worlds of another kind, give their number, the control steps of one of their steps, and the center that they add
+        to actions. stochastic: samples actions, with noise from the seed that is correlated as in training.
         """
         return Actor(self, where, num_envs=num_envs, action_repeat=action_repeat, center=center, stochastic=stochastic,
                      seed=seed)
 
     def predict(self, observation: Any, state: Any = None, episode_start: Any = None,
                 deterministic: bool = True) -> tuple[FloatArray, Any]:
-        """As a model of Stable-Baselines3: (action, state), one call for each control step.
+        """Like predict of a Stable-Baselines3 model: returns (action, state); call it once for each control step.
 
-        state carries the actions that are held: give back the one that the last call returned. episode_start [n] says where an
-        episode begins. deterministic=False samples by numpy's global generator. In an environment whose step is more than a
-        control step, or that has a center, policy.actor(env).predict is the one to take.
+        state contains the actions that are held: pass the one that the last call returned. episode_start [n] says where an
+        episode begins. deterministic=False samples with numpy's global generator. In an environment whose step has several
+        control steps, or that has a center, use policy.actor(env).predict.
         """
         observed = np.asarray(observation)
         rows = observed.reshape(-1, observed.shape[-1]) if observed.ndim in (1, 2) else observed
@@ -247,14 +247,14 @@ class Policy(Hinted):
         return given_back, (left, action, noise, fresh)
 
     def _told_no_state(self) -> None:
-        """A second call that begins anew is a loop that drops the state."""
+        """Warns when a second call has no state: the loop that calls drops it."""
         if getattr(self._local, "began", 0) == 1:
             warn(f"predict: no state was given back, so this policy decides at every step in place of every "
                  f"{self.info.action_repeat}. action, state = policy.predict(obs, state, episode_start)")
         self._local.began = getattr(self._local, "began", 0) + 1
 
     def _scratch(self, rows: int) -> tuple[int, int]:
-        """Size and address of this thread's memory for so many rows."""
+        """Size and address of this thread's scratch memory for that many rows."""
         if getattr(self._local, "rows", None) != rows:
             size = lib.rdm_policy_scratch(self._handle.value, rows)
             self._local.memory = np.empty(size, np.uint8)
@@ -269,7 +269,7 @@ class Policy(Hinted):
 
     @property
     def columns(self) -> Array:
-        """Which entries of a row the policy reads, ascending: all, but for option actor_obs of its agent."""
+        """Which entries of a row the policy reads, ascending: all, unless its agent had option actor_obs."""
         out = np.empty(self.info.obs_dim, np.int32)
         count = ctypes.c_size_t()
         check(lib.rdm_policy_get_columns(self._open(), out.ctypes.data, len(out), ctypes.byref(count)))

@@ -48,7 +48,7 @@ def _autoreset(mode: object) -> int:
 
 
 def _struct(own: Mapping[str, Any]) -> _abi.rdm_pool_config:
-    """The config of plain values."""
+    """The config struct from plain values."""
     config = sized(_abi.rdm_pool_config)
     check(lib.rdm_pool_config_init(byref(config), ctypes.sizeof(config)))
     config.task = encoded(_discovery.task_name(own["task"]))
@@ -59,7 +59,7 @@ def _struct(own: Mapping[str, Any]) -> _abi.rdm_pool_config:
 
 
 def _kinds(task: str) -> dict[str, int]:
-    """What each option of a task is."""
+    """The kind of each option of a task."""
     return {key: option.kind for key, option in _discovery.task(task).options.items()}
 
 
@@ -89,8 +89,8 @@ def check_task(task: _discovery.TaskName, options: Optional[Options] = None) -> 
 
 
 class Guard(_abi.Guard):
-    """A half space of actions, normal . action <= bound: the cost of its column, `cost` by name, is 0 in each step while all
-    guards of that column are kept. entry: the only one that is not 0 in normal, None where there are several."""
+    """A half space of actions, normal . action <= bound: the cost of its column, called `cost`, is 0 in each step as long as
+    all guards of that column are kept. entry: the only entry of normal that is not 0, None where there are several."""
 
     entry: Optional[int]  # type: ignore[assignment]
     cost: str
@@ -103,7 +103,7 @@ class Guard(_abi.Guard):
 
 
 class Sensors:
-    """What worlds see (option modality): arrays of the library's memory, None where a modality is off."""
+    """What worlds see (option modality): arrays in the library's memory, None where a modality is off."""
 
     rgb: Optional[npt.NDArray[np.uint8]]
     depth: Optional[FloatArray]
@@ -147,9 +147,9 @@ class Pool(Hinted):
             pool.step()
         print(pool.episode_return, pool.cost)
 
-    Rows (obs, action, reward, cost, ...) are views of one memory that reset and step write: copy what is to stay.
-    They outlive the pool. One thread at a time uses a pool; others wait. Options are a dict (`pool.options` has all); the
-    files of a robot (my.urdf) and an object (mug.object) stand for the names of those in them.
+    Rows (obs, action, reward, cost, ...) are views of memory that reset and step overwrite: copy what you want to keep. They
+    stay valid after the pool is closed. One thread at a time uses a pool; others wait. Options are a dict (`pool.options`
+    has all); the files of a robot (my.urdf) and an object (mug.object) stand for the names of those in them.
     task: a name, redman.task(name), a .task file, or an id of Gymnasium's. threads: 0 or 1 the caller's only. autoreset: what a
     step does with worlds that ended: "same_step" begins the next episode in it, "next_step" in the step that follows, "off"
     leaves it to reset(mask=...). ranks: this pool has the worlds of one process of several (redman.Ranks).
@@ -198,7 +198,7 @@ class Pool(Hinted):
 
     @property
     def obs(self) -> FloatArray:
-        """[num_envs][obs_dim] what the worlds are in now."""
+        """[num_envs][obs_dim] the present observations."""
         return self._obs
 
     @property
@@ -208,7 +208,7 @@ class Pool(Hinted):
 
     @property
     def action(self) -> FloatArray:
-        """[num_envs][action_dim] in [-1, 1], to be written; assignment copies."""
+        """[num_envs][action_dim] actions in [-1, 1] for the next step; assignment copies."""
         return self._action
 
     @action.setter
@@ -247,8 +247,8 @@ class Pool(Hinted):
 
     @property
     def status(self) -> npt.NDArray[np.uint32]:
-        """[num_envs] bits of the last step or reset, redman.Status: 1 contacts were left out, 2 diverged, 4 bad action, 8 the
-        task failed, 16 contacts were not solved, 32 a body was slowed."""
+        """[num_envs] bits of the last step or reset, redman.Status: 1 contacts were left out, 2 diverged, 4 bad action, 8
+        the task failed, 16 the contact solver did not converge, 32 a body was slowed."""
         return self._rows["status"]
 
     @property
@@ -263,7 +263,7 @@ class Pool(Hinted):
 
     @property
     def truncated(self) -> npt.NDArray[np.bool_]:
-        """[num_envs] cut by the time limit or a bad status."""
+        """[num_envs] ended by the time limit or a bad status."""
         return self._rows["truncated"].view(np.bool_)
 
     @property
@@ -294,7 +294,8 @@ class Pool(Hinted):
             raise_kept()
 
     def watch(self, action: Any, centered: bool = False) -> None:
-        """Warns where an action comes straight from a policy at each of several steps that it is to be held for."""
+        """Warns when an action comes directly from a policy at each of several steps, during which one action should be
+        held."""
         if LAST.array is not None:
             rows = self._rows
             ended = rows["terminated"][0] or rows["truncated"][0]  # the row is then the finished episode's
@@ -319,8 +320,8 @@ class Pool(Hinted):
     def reset(self, seeds: Union[None, int, Sequence[int], Array] = None, mask: Any = None) -> FloatArray:
         """Starts new episodes where mask holds (None: everywhere) and returns obs.
 
-        seeds name the episodes, one for each world; a single one stands for seed, seed + 1, ... None continues
-        the worlds' own streams.
+        seeds: one for each world, which determine the episodes; a single seed means seed, seed + 1, ...; None continues the
+        worlds' own streams.
         """
         rows = None
         if seeds is not None:
@@ -344,10 +345,11 @@ class Pool(Hinted):
         return self._obs
 
     def step(self, action: Any = None, mask: Any = None) -> FloatArray:
-        """One step of every world (of those where mask holds), of option action_repeat control steps; returns obs.
+        """One step of every world (or of those where mask is true), of as many control steps as option action_repeat says;
+        returns obs.
 
-        action is written to pool.action first; None takes what stands there. A policy's is that of policy.actor(pool), which
-        holds it: pool.step(actor()).
+        action is written to pool.action first; None uses what is there. To play a policy, use policy.actor(pool), which
+        holds its actions: pool.step(actor()).
         """
         if action is not None and action is not self._action:
             self._write_action(action)
@@ -363,7 +365,7 @@ class Pool(Hinted):
         return self._obs
 
     def baseline(self, kind: str = "hold") -> FloatArray:
-        """Fills pool.action by a policy that learns nothing, "zero", "hold" or "random", and returns it."""
+        """Fills pool.action with the actions of a simple baseline, "zero", "hold" or "random", and returns it."""
         if kind not in _BASELINE:
             raise ArgumentError(f"baseline: {kind!r} is none of {', '.join(_BASELINE)}")
         with self._lock:
@@ -373,7 +375,7 @@ class Pool(Hinted):
     # ---- state ------------------------------------------------------------------------------------------------
 
     def state(self, env: int = -1) -> bytes:
-        """The whole state of one world, or of all (-1)."""
+        """The complete state of one world, or of all (-1)."""
         with self._lock:
             size = c_size_t()
             self._check(lib.rdm_pool_write_state(self._p, int32(env, "env"), None, 0, byref(size)))
@@ -382,7 +384,7 @@ class Pool(Hinted):
             return raw.raw
 
     def set_state(self, state: bytes, env: int = -1) -> None:
-        """Continues from state(), with the same bytes. Writes obs anew and clears the other rows of that world."""
+        """Continues from state(), with the same bytes. Rewrites obs and clears the other rows of that world."""
         with self._lock:
             self._check(lib.rdm_pool_read_state(self._p, int32(env, "env"), bytes(state), len(state)))
             self._begun = True
@@ -443,7 +445,7 @@ class Pool(Hinted):
 
     @property
     def shapes(self) -> list[_discovery.Shape]:
-        """What the scene is made of, the same for all worlds; kind is a redman.ShapeKind."""
+        """The shapes of the scene, the same for all worlds; kind is a redman.ShapeKind."""
         return list(self._shapes)
 
     @cached_property
@@ -482,11 +484,11 @@ class Pool(Hinted):
                 for i in range(self.spec.num_joints)]
 
     def joint_positions(self, env: int = 0) -> Array:
-        """[num_joints] where the joints of one world are, rad (m)."""
+        """[num_joints] positions of the joints of one world, rad (m)."""
         return self._joint_row(env, 0)
 
     def joint_velocities(self, env: int = 0) -> Array:
-        """[num_joints] how fast they are, rad/s (m/s)."""
+        """[num_joints] velocities of the joints, rad/s (m/s)."""
         return self._joint_row(env, 1)
 
     def _joint_row(self, env: int, which: int) -> Array:
@@ -498,9 +500,10 @@ class Pool(Hinted):
         return out
 
     def set_joints(self, env: int, q: Optional[npt.ArrayLike] = None, qd: Optional[npt.ArrayLike] = None) -> None:
-        """Puts the joints of one world there; None: these stay. NaN of a coupled joint: where the other one leads it.
+        """Sets positions and velocities of the joints of one world; None: unchanged. NaN for a coupled joint: what follows
+        from the joint that it is coupled to.
 
-        Writes obs anew and clears the other rows of that world, as set_state does."""
+        Rewrites obs and clears the other rows of that world, as set_state does."""
         kinds, lengths = _abi.FUNCTIONS["rdm_pool_set_joints"].rows, {"count": self.spec.num_joints}
         rows = [None if row is None else given(row, kinds[name], lengths, name) for name, row in (("q", q), ("qd", qd))]
         with self._lock:
@@ -510,7 +513,7 @@ class Pool(Hinted):
 
     def raycast(self, env: int, origin: Sequence[float], direction: Sequence[float],
                 range: float = math.inf) -> Optional[_abi.RayHit]:
-        """The nearest shape that a ray meets within `range` m, with distance, point and normal; None: nothing."""
+        """The nearest shape that a ray hits within `range` m, with distance, point and normal; None if there is none."""
         kinds = _abi.FUNCTIONS["rdm_pool_raycast"].rows
         rows = [given(row, kinds[name], {}, name) for name, row in (("origin", origin), ("direction", direction))]
         hit = sized(_abi.rdm_ray_hit)
@@ -532,7 +535,7 @@ class Pool(Hinted):
                 out = np.empty(count.value, out.dtype)
 
     def push(self, env: int, shape: Union[int, str], force: Sequence[float]) -> None:
-        """Pushes a shape's carrier during the next step: force in N at its centre of mass, world axes."""
+        """Pushes the body or link that has a shape during the next step: force in N (world axes) at its centre of mass."""
         if isinstance(shape, str):
             names = [row.name for row in self._shapes]
             if shape not in names:
@@ -544,7 +547,7 @@ class Pool(Hinted):
 
     @property
     def sensors(self) -> Sensors:
-        """Pictures, clouds and voxels (option modality): arrays of the library's own memory, which they keep."""
+        """Pictures, clouds and voxels (option modality): arrays in the library's own memory, which they keep alive."""
         self._open()
         assert self._handle is not None
         return Sensors(self._handle, self.num_envs)
@@ -555,7 +558,7 @@ class Pool(Hinted):
 
     @property
     def stats(self) -> _abi.PoolStats:
-        """Contacts, drift and bad worlds so far."""
+        """Counts of contacts, joint drift and failed worlds so far."""
         return _abi.PoolStats(filled(_abi.rdm_pool_stats, lib.rdm_pool_get_stats, self._open()))
 
     # ---- what it is -------------------------------------------------------------------------------------------
@@ -617,7 +620,7 @@ class Pool(Hinted):
 
     @property
     def guards(self) -> list[Guard]:
-        """Half spaces within which a cost is 0: of tasks whose cost is of the action alone, as throws with
+        """Half spaces of actions in which a cost is 0, for tasks whose cost depends on the action alone, such as throws with
         cost_mode=command. Experimental."""
         out: list[Guard] = []
         struct, normal = sized(_abi.rdm_guard), np.empty(self.action_dim, np.float32)
@@ -636,7 +639,7 @@ class Pool(Hinted):
 
     @property
     def seed(self) -> int:
-        """That which it was made with."""
+        """The seed that the pool was made with."""
         return int(self._config["seed"])
 
     @property
@@ -655,7 +658,7 @@ class Pool(Hinted):
         return str(self._config["autoreset"])
 
     def close(self) -> None:
-        """Ends the worlds; rows and sensor arrays that were taken stay good. A second call does nothing."""
+        """Destroys the worlds; rows and sensor arrays that you hold stay valid. A second call does nothing."""
         with self._lock:
             self._handle = None
             self._p = None

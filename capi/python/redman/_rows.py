@@ -49,7 +49,7 @@ def made(table: Mapping[str, Rows], lengths: Mapping[str, int]) -> dict[str, Arr
 def given(value: Any, rows: Rows, lengths: Mapping[str, int], name: str, spread: bool = False) -> Array:
     """The caller's array as the library reads it: no copy where type, shape and order are already right.
 
-    Lengths of 1 may be left out: [n] for [n][1], a number for [1]. With spread it is repeated along what it lacks.
+    Lengths of 1 may be left out: [n] for [n][1], a number for [1]. With spread, values are repeated along missing axes.
     """
     shape = shape_of(rows, lengths)
     array = _cast(np.asarray(value), np.dtype(rows.dtype), name)
@@ -100,7 +100,8 @@ class Borrowed:
 
 
 def clouds(points: Any, point_class: Any, point_color: Any, rows: int) -> tuple[_abi.rdm_points, tuple[Any, ...]]:
-    """The struct for clouds points [rows][n][3], point_class [rows][n], point_color [rows][n][3] or None, and what it borrows."""
+    """The struct for clouds points [rows][n][3], point_class [rows][n], point_color [rows][n][3] or None, and the arrays
+    that it borrows."""
     array = np.asarray(points)
     if array.ndim == 2 and rows == 1:
         array = array[None]

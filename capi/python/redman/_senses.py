@@ -16,7 +16,8 @@ _BOUNDS: dict[str, tuple[Any, Any]] = {
 
 
 class Senses:
-    """Views [num_envs][...] of the library's memory by name, the same until the pool ends. One camera has no axis."""
+    """Views [num_envs][...] of the library's memory by name, the same until the pool is closed. A single camera has no axis
+    of its own."""
 
     def __init__(self, pool: Pool) -> None:
         self.rows: dict[str, Array] = {}

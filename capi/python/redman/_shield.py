@@ -1,5 +1,5 @@
-"""Shield: under it no cost exceeds its budget, whatever is proposed; project: the nearest action within half spaces.
-Experimental, as redman/shield.h is."""
+"""Shield: keeps every cost within its budget, whatever actions are proposed; project: the nearest action within half spaces.
+Experimental, like redman/shield.h."""
 from __future__ import annotations
 
 import ctypes
@@ -48,9 +48,10 @@ class ShieldRow(_abi.ShieldRow):
 
 
 class Shield(Hinted):
-    """Lets an action through only where an exact copy of the world, continued by a known plan, keeps within the budget of every
-    cost to the episode's end; else another action takes its place. Before that it goes to the nearest action that keeps the
-    guards, pool.guards of costs whose budget is 0 and those of add_guard; with options={"predict": False} that is all.
+    """Accepts an action only if an exact copy of the world, which takes it and then follows a known plan, keeps every cost
+    within its budget until the episode ends; otherwise it chooses another action. Before that, it replaces the action by the
+    nearest one that keeps the guards: pool.guards of costs whose budget is 0, and those of add_guard; with
+    options={"predict": False} it does nothing else.
 
         pool = redman.Pool("hand_over_safe_joint", 16, options={"action_repeat": 4})    # a step is a decision
         pool.reset()
@@ -61,15 +62,16 @@ class Shield(Hinted):
 
     policy: a Policy, its file or run folder, or "trained", the bundled one of the task; it must hold its actions as long
     as a decision lasts. After policies, action 0 and the hold action are tried (options zero, hold).
-    steps: of the pool that a decision lasts; None: as long as the policy holds an action, 1 without. Where it is more than 1, act
-    is called at every so many steps, and its action is held between.
-    budgets: on the sum of each cost over an episode, as Agent's cost_limits; None: the cost is not looked at. Column 0 has 0
-    unless given.
-    options: `redman.shield_options()` has them with their help. threads: of the copies; 0: as many as the pool has.
+    steps: how many steps of the pool a decision lasts; None: as long as the policy holds an action, 1 without a policy.
+    Where it is more than 1, call act once every `steps` steps and hold its action in between.
+    budgets: bounds on the sum of each cost over an episode, given like Agent's cost_limits; None: the cost is ignored.
+    Column 0 has 0 unless given.
+    options: `redman.shield_options()` lists them with their help. threads: of the copies; 0: as many as the pool has.
 
-    An exact copy knows what its world will draw. For a real robot the proof is one for the model; option copies tries each
-    way in several copies with draws of their own. A world in which nothing that was tried is clean is a StateError, which
-    names it; with options={"unproven": "least"} it runs what exceeds the budgets least.
+    An exact copy knows the random numbers that its world will draw, so for a real robot the proof holds for the model alone;
+    option copies tries each plan in several copies with random numbers of their own. When nothing that was tried keeps the
+    budgets in a world, StateError names it; with options={"unproven": "least"} the action that exceeds them least is
+    executed instead.
     """
 
     _hints = {
@@ -110,14 +112,14 @@ class Shield(Hinted):
         self._lengths = {"num_envs": pool.num_envs, "action_dim": pool.action_dim}
 
     def add(self, policy: Backup) -> None:
-        """One backup more, behind the policies that there are."""
+        """Adds a policy as a backup, after those that there are."""
         policy = policy_of(policy, self.pool.task)
         with self._lock, on_task(self.pool):
             check(lib.rdm_shield_add_policy(self._handle.value, policy._open()))
             self._policies.append(policy)
 
     def add_guard(self, normal: Any, bound: float) -> int:
-        """One guard more, of all worlds: normal [action_dim] . action <= bound. Its number for set_guard. Plans are
+        """Adds a guard for all worlds: normal [action_dim] . action <= bound. Returns its number for set_guard. Plans are
         forgotten."""
         row = self._normal("rdm_shield_add_guard", normal)
         with self._lock:
@@ -126,8 +128,8 @@ class Shield(Hinted):
             return len(self._guards) - 1
 
     def set_guard(self, env: int, i: int, normal: Any, bound: float) -> None:
-        """Guard i of those that were added, of one world from now on, as a model says it of its state. Its plan is forgotten
-        where something differs."""
+        """Sets guard i of those that were added, for one world from now on, such as a model predicts it for the world's
+        state. The world's plan is forgotten if the guard changed."""
         row = self._normal("rdm_shield_set_guard", normal)
         with self._lock:
             check(lib.rdm_shield_set_guard(self._handle.value, int32(env, "env"), int32(i, "i"), row.ctypes.data, bound))
@@ -136,11 +138,11 @@ class Shield(Hinted):
         return given(normal, _abi.FUNCTIONS[function].rows["normal"], self._lengths, "normal")
 
     def act(self, proposed: Any = None, mask: Any = None) -> FloatArray:
-        """What the worlds are to do [num_envs][action_dim] where `proposed` is what each would do; for a decision, whose action
-        is then held for `steps` steps of the pool.
+        """Actions [num_envs][action_dim] for the worlds, given the `proposed` ones; it is one decision, to be held for
+        `steps` steps of the pool.
 
-        proposed None looks at pool.action in place, and returns it. mask [num_envs]: worlds that decide now; the rows of others
-        come back as they are.
+        proposed None: checks pool.action in place, and returns it. mask [num_envs]: the worlds that decide now; rows of
+        others are returned unchanged.
         """
         chosen = self._mask(mask)
         rows: Array = self.pool.action if proposed is None else given(proposed, self._rows["proposed"], self._lengths, "proposed")
@@ -150,8 +152,8 @@ class Shield(Hinted):
         return out if proposed is None else out.reshape(np.shape(proposed))
 
     def guard(self, mask: Optional[Array] = None) -> Array:
-        """act() of pool.action where mask holds, but for worlds whose action is not finite: it ends their episode, as without a
-        shield. The kinds of this decision [num_envs], OWN where nothing was asked."""
+        """act() on pool.action where mask is true, except for worlds whose action is not finite, which ends their episode as
+        without a shield. Returns the kinds of this decision [num_envs], OWN where nothing was checked."""
         asked: Array = np.isfinite(self.pool.action).all(axis=1)
         if mask is not None:
             asked &= mask
@@ -160,7 +162,7 @@ class Shield(Hinted):
         return self.kinds * asked
 
     def row(self, env: int = 0) -> ShieldRow:
-        """What was done in the last decision of one world."""
+        """What the shield did in the last decision of one world."""
         with self.pool._lock, self._lock:
             return ShieldRow(filled(_abi.rdm_shield_row, lib.rdm_shield_get_row, self._handle.value, self.pool._open(),
                                     int32(env, "env")), list(self.pool.costs))
@@ -175,12 +177,12 @@ class Shield(Hinted):
 
     @property
     def intervened(self) -> npt.NDArray[np.bool_]:
-        """[num_envs] where the last decision was not let through as it was."""
+        """[num_envs] whether the last decision was changed."""
         refused: npt.NDArray[np.bool_] = self.kinds != ShieldKind.OWN
         return refused
 
     def plan(self, env: int = 0) -> FloatArray:
-        """[decisions][action_dim] the plan of one world from now to its episode's end; no rows where it has none."""
+        """[decisions][action_dim] the plan of one world from now to the end of its episode; no rows where it has none."""
         count = c_size_t()
         with self.pool._lock, self._lock:
             arguments = self._handle.value, self.pool._open(), int32(env, "env")
@@ -190,8 +192,9 @@ class Shield(Hinted):
         return out.reshape(-1, self.pool.action_dim)
 
     def set_plan(self, plan: Any, env: int = 0) -> None:
-        """plan [decisions][action_dim] becomes the plan of one world, as a demonstration or a planner has it: it goes on where
-        nothing new is clean. StateError where a budget is exceeded by it, which says when; its plan before stays then."""
+        """Makes plan [decisions][action_dim], such as a demonstration or a planner's plan, the plan of one world, which
+        follows it when nothing new keeps the budgets. StateError if it exceeds a budget, with the time; the previous plan
+        stays then."""
         lengths = {**self._lengths, "decisions": np.size(plan) // self.pool.action_dim}
         rows = given(plan, _abi.FUNCTIONS["rdm_shield_set_plan"].rows["plan"], lengths, "plan")
         with self.pool._lock, self._lock:
@@ -199,12 +202,12 @@ class Shield(Hinted):
 
     @property
     def stats(self) -> _abi.ShieldStats:
-        """Counts of all worlds since the shield was made: decisions, how many it was asked about, what it did."""
+        """Counts over all worlds since the shield was made: decisions, how many were tried in copies, and what was done."""
         return _abi.ShieldStats(filled(_abi.rdm_shield_stats, lib.rdm_shield_get_stats, self._handle.value))
 
     @property
     def interventions(self) -> int:
-        """Decisions so far that were not let through as they were."""
+        """Number of decisions so far that were changed."""
         counts = self.stats
         return counts.changed + counts.planned + counts.projected + counts.unproven
 
@@ -216,28 +219,28 @@ class Shield(Hinted):
 
     @property
     def budgets(self) -> list[Optional[float]]:
-        """The budget of each cost, None where it is not looked at."""
+        """The budget of each cost, None where it is ignored."""
         return [None if budget < 0 else budget for budget in self._config["budgets"]]
 
     @property
     def backups(self) -> list[Union[Policy, str]]:
-        """Ways to continue, in the order in which they are tried: policies, "zero", "hold"."""
+        """The backups in the order in which they are tried: policies, "zero", "hold"."""
         options, out = self.options, list[Union[Policy, str]](self._policies)
         return out + [name for name in ("zero", "hold") if options[name]]
 
     def reset(self, mask: Any = None) -> None:
-        """Forgets the plans of all worlds, or of those where mask [num_envs] is true. An episode that begins is noticed
-        without."""
+        """Forgets the plans of all worlds, or of those where mask [num_envs] is true. Not needed when an episode begins: the
+        shield notices that."""
         with self._lock:
             check(lib.rdm_shield_reset(self._handle.value, address(self._mask(mask))))
 
     def state(self) -> bytes:
-        """Plans, noise, counts and what set_guard said."""
+        """Plans, noise, counts and the guards of set_guard."""
         with self._lock:
             return bytes_of(lib.rdm_shield_write_state, self._handle.value)
 
     def set_state(self, state: bytes) -> None:
-        """Continues from state() with the same bytes, beside a pool that was set to the state of that moment."""
+        """Continues from state() with the same bytes, if the pool is set to its state of that moment too."""
         with self._lock:
             check(lib.rdm_shield_read_state(self._handle.value, bytes(state), len(state)))
 
@@ -266,7 +269,7 @@ class Shield(Hinted):
 
 
 def project(normals: Any, bounds: Any, action: Any) -> FloatArray:
-    """The action in [-1, 1], of all with normals [count][dim] . action <= bounds [count], that is nearest to action [dim]."""
+    """The point in [-1, 1] nearest to action [dim] that satisfies normals [count][dim] . point <= bounds [count]."""
     rows = _abi.FUNCTIONS["rdm_project"].rows
     count, dim = np.size(bounds), np.size(action)
     lengths = {"count": count, "dim": dim}
@@ -278,7 +281,7 @@ def project(normals: Any, bounds: Any, action: Any) -> FloatArray:
 
 
 def shield_of(pool: Pool, wanted: Shielding, policy: Optional[Backup], steps: int = 1) -> Optional[Shield]:
-    """The shield that an environment or an evaluation was asked for."""
+    """The shield for the shield= argument of an environment or an evaluation."""
     if wanted is None or wanted is False:
         if policy is not None:
             raise ArgumentError("shield_policy: there is no shield that it would be a backup of; shield=True")

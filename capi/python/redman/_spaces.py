@@ -1,4 +1,4 @@
-"""Stand-ins for the classes of Gymnasium that environments are made of, for where it is not installed."""
+"""Replacements for the classes of Gymnasium that environments need, for when it is not installed."""
 from __future__ import annotations
 
 import sys
@@ -21,11 +21,11 @@ class Box:
         self._random = np.random.default_rng(seed)
 
     def seed(self, seed: Optional[int] = None) -> None:
-        """Names the stream of sample()."""
+        """Seeds the random numbers of sample()."""
         self._random = np.random.default_rng(seed)
 
     def sample(self) -> Array:
-        """Uniform between bounds; where there is none, normal about 0."""
+        """Uniform between bounds; standard normal where there are none."""
         bounded = np.isfinite(self.low) & np.isfinite(self.high)
         low, high = np.where(bounded, self.low, 0), np.where(bounded, self.high, 0)
         drawn = np.where(bounded, self._random.uniform(low, high), self._random.standard_normal(self.shape))
@@ -50,7 +50,7 @@ class Dict(dict[str, Any]):
     """Named spaces."""
 
     def seed(self, seed: Optional[int] = None) -> None:
-        """Names the streams of sample()."""
+        """Seeds the random numbers of sample()."""
         for i, space in enumerate(self.values()):
             space.seed(None if seed is None else seed + i)
 
@@ -66,7 +66,7 @@ class Dict(dict[str, Any]):
 
 
 class Env:
-    """What gymnasium.Env gives its children."""
+    """What gymnasium.Env gives its subclasses."""
 
     metadata: dict[str, Any] = {"render_modes": []}
     render_mode: Optional[str] = None
@@ -80,7 +80,7 @@ class Env:
 
     @property
     def np_random(self) -> np.random.Generator:
-        """A generator that reset(seed=) names."""
+        """The random generator, which reset(seed=) seeds."""
         if self._np_random is None:
             self._np_random = np.random.default_rng()
         return self._np_random
@@ -100,7 +100,7 @@ class Env:
 
 
 class VectorEnv(Env):
-    """What gymnasium.vector.VectorEnv gives its children."""
+    """What gymnasium.vector.VectorEnv gives its subclasses."""
 
     num_envs = 0
     closed = False

@@ -12,7 +12,7 @@ from ._rows import FloatArray
 
 
 class Tensors(Mapping[str, FloatArray]):
-    """What an agent or a policy is made of. Reading copies; vectors are [n], weights [outputs][inputs]."""
+    """The parameters of an agent or a policy. Reading copies; vectors are [n], weights [outputs][inputs]."""
 
     def __init__(self, owner: Any, at: Callable[..., int], read: Callable[..., int]) -> None:
         self._owner, self._at, self._read = owner, at, read

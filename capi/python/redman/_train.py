@@ -1,4 +1,4 @@
-"""train: a run from first step to kept policy, with the run folder of the command-line tool."""
+"""train: a complete training run, with the run folder of the command-line tool."""
 from __future__ import annotations
 
 import contextlib
@@ -47,8 +47,8 @@ class _Score(NamedTuple):
 
 
 def _score(e: Evaluation) -> _Score:
-    """A cost counts as its mean and a standard error of it: the best of many noisy evaluations is one that came out
-    too low."""
+    """A cost counts as its mean plus a standard error, since the best of many noisy evaluations is usually one that was
+    lucky."""
     feasible, excess = True, 0.0
     for mean, deviation, limit in zip(e.cost_mean, e.cost_std, e.cost_limits):
         if limit is not None:
@@ -59,7 +59,7 @@ def _score(e: Evaluation) -> _Score:
 
 
 class Run(Hinted):
-    """A finished run: policy (the best feasible one), curve, agent (its last state), folder, env_steps, seconds."""
+    """A finished run: policy (the best one within the limits), curve, agent (its last state), folder, env_steps, seconds."""
 
     _draws = "run.curve and run.policy draw themselves in a notebook; run.curve.save('curve.svg') writes the curve"
     _hints = {
@@ -78,7 +78,7 @@ class Run(Hinted):
         self._rows: dict[str, list[float]] = {}
 
     def _own(self, policy: Policy) -> Policy:
-        """The policy with what it is to be judged by."""
+        """The policy with the settings to evaluate it by."""
         names = _discovery.task(self.task).costs
         limits = {name: limit for name, limit in zip(names, self.agent.cost_limits) if limit is not None}
         policy.origin = Origin(self.task, self.options, limits, learns_magnitudes(self.agent),
@@ -118,14 +118,14 @@ class Run(Hinted):
 
     @classmethod
     def load(cls, folder: Union[str, os.PathLike[str]]) -> Run:
-        """A run is not read back."""
+        """Always refused: a run cannot be read back."""
         raise UnsupportedError(f"Run.load: redman.Policy.load({os.fspath(folder)!r}) and redman.curve(...) read a run folder; "
                                 "the command `redman train --resume FOLDER` continues it")
 
     def evaluate(self, episodes: int = 100, num_envs: int = 16, seed: int = 0, threads: int = 0, *, shield: Shielding = None,
                  shield_policy: Optional[Backup] = None) -> Evaluation:
-        """The policy on episodes that it was not chosen by: those of `redman.evaluate(folder)` and of
-        `redman eval --policy FOLDER`. The report at the end of `redman train` is that of seed=run.seed + 1_000_000."""
+        """Evaluates the policy on episodes that were not used to choose it: those of `redman.evaluate(folder)` and of
+        `redman eval --policy FOLDER`. The report at the end of `redman train` uses seed=run.seed + 1_000_000."""
         return evaluate(self.policy, episodes=episodes, num_envs=num_envs, seed=seed, threads=threads, shield=shield,
                         shield_policy=shield_policy)
 
@@ -144,7 +144,7 @@ def _folded(key: str) -> str:
 
 
 def split_options(task: str, algo: str, options: Options) -> tuple[dict[str, Value], dict[str, Value]]:
-    """Options of the task and those of the algorithm; a key of both goes to both."""
+    """Splits options into those of the task and those of the algorithm; a key of both goes to both."""
     tables = (_discovery.task(task).options, _discovery.algo(algo).options)
     of_task, of_algo = ({_folded(key) for key in table} for table in tables)
     kinds = {key: option.kind for table in tables for key, option in table.items()}
@@ -164,12 +164,12 @@ def split_options(task: str, algo: str, options: Options) -> tuple[dict[str, Val
 
 
 def learns_magnitudes(agent: Agent) -> bool:
-    """Its costs are sums of cost_raw, and its limits in that unit."""
+    """Whether its costs are sums of cost_raw, with limits in that unit."""
     return agent.options["cost_signal"] == "raw"
 
 
 def _handles_costs(algo: str, columns: int) -> bool:
-    """An algorithm that handles costs refuses to work without a limit."""
+    """Whether the algorithm handles costs: such an algorithm refuses to work without a limit."""
     config = _abi.rdm_agent_config()
     check(lib.rdm_agent_config_init(byref(config), ctypes.sizeof(config)))
     none = np.full(columns, -1.0)
@@ -206,7 +206,7 @@ class _Meter:
         self._width = len(line) if self._live else 0
 
     def end(self, run: Run) -> None:
-        """Leaves the line, and says so when the run is not over."""
+        """Ends the line, and says so when the run is not over."""
         self._say("\n" if self._width else "")
         if run.interrupted:
             further = f"; continue with redman train --resume {run.folder}" if run.folder else ""
@@ -220,7 +220,7 @@ class _Meter:
 
 @contextlib.contextmanager
 def _ends_after_epoch() -> Iterator[list[int]]:
-    """The first Ctrl-C is counted, the next raise KeyboardInterrupt as ever."""
+    """Counts the first Ctrl-C; further ones raise KeyboardInterrupt as usual."""
     heard: list[int] = []
     own = (threading.current_thread() is threading.main_thread()
            and signal.getsignal(signal.SIGINT) is signal.default_int_handler)
@@ -297,8 +297,9 @@ def _begins(path: Path, head: bytes) -> bool:
 
 
 class _Folder:
-    """A run folder that `redman eval`, `plot` and `train --resume` take: whole files or none, locked while it is
-    written. Files of those names that redman did not write stay, and the run is refused."""
+    """A run folder that `redman eval`, `plot` and `train --resume` can read. Files are written entirely or not at all, and
+    the folder is locked meanwhile. If it has files of these names that redman did not write, they stay and the run is
+    refused."""
 
     def __init__(self, path: Union[str, os.PathLike[str]], overwrite: bool) -> None:
         self.path = Path(path)
@@ -358,7 +359,7 @@ class _Folder:
 
 def _config(run: Run, pool: Pool, of_task: dict[str, Value], of_algo: dict[str, Value], steps: int, threads: int,
             eval_every: int, per_epoch: int, task_text: Optional[str]) -> dict[str, Any]:
-    """config.json: what the run was asked for, with the defaults written out."""
+    """config.json: the settings of the run, with all defaults written out."""
     limits = dict(zip(pool.costs, run.agent.cost_limits))
     return {
         "exp_name": f"{run.task}-{run.algo}-seed-{run.seed}", "task": run.task, "algo": run.algo, "seed": run.seed,
@@ -378,7 +379,7 @@ def _config(run: Run, pool: Pool, of_task: dict[str, Value], of_algo: dict[str, 
 
 def _note(e: Epoch, folder: _Folder, seconds: float, tested: tuple[float, float], best: Optional[_Score],
           policy: Policy) -> bytes:
-    """What a checkpoint says beside the states: a line of JSON, then the best policy."""
+    """What a checkpoint holds besides the states: a line of JSON, then the best policy."""
     said: dict[str, Any] = {"epoch": e.epoch, "env_steps": e.env_steps, "progress_bytes": folder.progress_bytes,
                             "seconds": seconds}
     if best is None:
@@ -392,7 +393,7 @@ _OWN_SEED = "a run has one seed: [redman.train(..., seed=s) for s in seeds] make
 
 
 def _steps(steps: float) -> int:
-    """A whole number of control steps, 1e6 too."""
+    """A whole number of control steps; 1e6 is accepted too."""
     try:
         goal = int(steps)
     except TypeError:
@@ -415,15 +416,16 @@ def train(task: _discovery.TaskName, algo: str = "ppo_lag", steps: float = 1e6, 
           task_file: Union[None, str, os.PathLike[str]] = None) -> Run:
     """Trains a policy on a task: the policy of `redman train` with the same arguments, to the byte.
 
-    steps are control steps of all worlds together, rounded up to whole epochs, which a line on stderr says; options are those
-    of the task and of the algorithm. Every eval_every epochs twenty episodes, and eighty more where those look good, decide which
-    policy is kept: the best that stays within the limits, else the one that comes nearest. callback(epoch) is called after each
-    epoch; a true answer ends the run. The first Ctrl-C ends it after this epoch, and what has been learned is returned; the second
-    at once.
+    steps: control steps of all worlds together, rounded up to whole epochs (a line on stderr says so). options: those of the
+    task and of the algorithm. Every eval_every epochs the policy is evaluated on twenty episodes, and on eighty more if
+    these look good, to decide which policy is kept: the best within the limits, else the one nearest to them.
+    callback(epoch) is called after each epoch; a true result ends the run. The first Ctrl-C ends it after this epoch and
+    returns what has been learned; the second ends it at once.
 
-    out makes a run folder, which `redman eval`, `plot`, `report` and `train --resume` take, with the curve for TensorBoard;
-    Python itself does not resume a run. task may be a .task file, and options may have files of robots and objects: their texts
-    are kept there, so that the folder is whole. task_file: the .task file that a task was registered from otherwise.
+    out: a run folder to write, which `redman eval`, `plot`, `report` and `train --resume` can read, with the curve for
+    TensorBoard; Python itself does not resume a run. task may be a .task file, and options may have files of robots and
+    objects: their texts are kept there, so that the folder is whole. task_file: the .task file that a task was registered
+    from otherwise.
     """
     goal = _steps(steps)
     if task_file is None and is_file("task", task):
@@ -473,7 +475,7 @@ def train(task: _discovery.TaskName, algo: str = "ppo_lag", steps: float = 1e6, 
         return summary(episodes, counted, judge.stats.violations - before)
 
     def compete(policy: Policy) -> tuple[float, float]:
-        """How it looked; a policy that is better than the best so far takes its place."""
+        """Evaluates the policy, keeps it if it is better than the best so far, and returns the result."""
         nonlocal best
         look = looked_at(policy, range(1))
         if best is None or _score(look) > best:

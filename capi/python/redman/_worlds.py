@@ -1,7 +1,7 @@
-"""What the adapters share: a pool seen as other libraries see environments.
+"""What the adapters share: a pool in the terms in which other libraries see environments.
 
-Bounds of observations and actions, names of entries and costs, seeds as Gymnasium counts them, actions about a start
-pose. An action of a learner is `center` + action, cut to [-1, 1] by the pool; without a center it is the action.
+Bounds of observations and actions, names of entries and costs, seeds as Gymnasium counts them, actions about a start pose. A
+learner's action is executed as `center` + action, clipped to [-1, 1] by the pool; without a center as it is.
 """
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Seeds = Union[None, int, Sequence[Optional[int]]]
 
 
 def center_of(pool: Pool, center: Center) -> Optional[FloatArray]:
-    """[action_dim] that is added to every action, None: nothing."""
+    """[action_dim] what is added to every action; None: nothing."""
     if center is None:
         return None
     if isinstance(center, str):
@@ -40,10 +40,10 @@ def center_of(pool: Pool, center: Center) -> Optional[FloatArray]:
 class Worlds:
     """num_envs worlds of a task in one pool.
 
-    seed: what the first reset() takes that is given none; None draws one from the system.
-    action_repeat: control steps of a step, "task" for the rate at which the task's own learner decides.
-    center: action of a learner's 0, "initial" for the pose with which the task's own learner begins, or [action_dim].
-    shield: what puts every action under a redman.Shield, True or a dict of its options, budgets, seed and threads; None: nothing.
+    seed: used by the first reset() without a seed; None draws one from the system.
+    action_repeat: control steps of a step; "task": those of a decision of the task's own learner.
+    center: the action for a learner's 0; "initial" for the pose with which the task's own learner begins, or [action_dim].
+    shield: a redman.Shield checks every action; True or a dict of its options, budgets, seed and threads; None: no shield.
     shield_policy: its first backup, whose decisions last a step.
     senses: "" where pictures and clouds are observations; else why they cannot be, and option modality is refused.
     """
@@ -71,7 +71,7 @@ class Worlds:
         self.obs_low = np.where(low == self.obs_high, low - 1, low)  # checkers take no box without width
 
     def _take_rows(self) -> None:
-        """The pool's rows, which stay where they are, without a look-up for each."""
+        """Stores the pool's rows, whose addresses do not change, to save a look-up at each use."""
         pool = self.pool
         self.obs, self.final_obs, self.action, self.reward = pool.obs, pool.final_obs, pool.action, pool.reward
         self.cost, self.terminated, self.truncated = pool.cost, pool.terminated, pool.truncated
@@ -90,7 +90,7 @@ class Worlds:
 
     @property
     def fields(self) -> dict[str, slice]:
-        """Where each named field of an observation stands."""
+        """Where each named field of an observation is."""
         return {name: field.slice for name, field in self.pool.fields.items()}
 
     @property
@@ -105,11 +105,11 @@ class Worlds:
 
     @property
     def seconds(self) -> float:
-        """Of a step."""
+        """Duration of a step, s."""
         return float(self.pool.control_dt) * self.pool.spec.action_repeat
 
     def reset(self, seed: Seeds = None, mask: Optional[Array] = None) -> None:
-        """New episodes where mask says. An int is seed + i for world i; where a list has None, and after a reset
+        """Begins new episodes where mask is true. An int means seed + i for world i; where a list has None, and in a reset
         without seeds, worlds continue with the streams that they have."""
         n = self.pool.num_envs
         if seed is None:  # the first reset names what is drawn, then worlds continue by themselves
@@ -132,7 +132,7 @@ class Worlds:
             self.pool.reset(None, chosen & ~named)
 
     def no_options(self, options: Optional[Mapping[str, Any]], known: Sequence[str] = ()) -> None:
-        """Refuses options of a reset that nobody reads."""
+        """Refuses options of a reset, since there are none."""
         for key in options or {}:
             if key in known:
                 continue
@@ -148,7 +148,7 @@ class Worlds:
         self._look(self._write(self.action, actions))
 
     def act_alone(self, action: Any) -> None:
-        """The same for the one world there is: [action_dim]."""
+        """The same for a single world: [action_dim]."""
         self._look(self._write(self.action[0], action))
 
     def _write(self, to: FloatArray, actions: Any) -> Array:
@@ -165,7 +165,7 @@ class Worlds:
         return rows
 
     def _look(self, actions: Array) -> None:
-        """Puts what the shield lets through in the place of a learner's actions."""
+        """Replaces a learner's actions by those that the shield accepts."""
         if self.shield is None:
             return
         # of worlds that only begin anew there is nothing to ask
@@ -176,13 +176,13 @@ class Worlds:
         self._applied = np.where(own[:, None], actions.reshape(ran.shape), ran).astype(np.float32)
 
     def shielded(self) -> dict[str, Array]:
-        """What infos say of the shield in the last step, a row for each world; nothing where there is none."""
+        """The entries of infos about the shield's last decision, a row for each world; empty without a shield."""
         if self.shield is None:
             return {}
         return {"applied": self._applied.copy(), "intervened": self._kinds != ShieldKind.OWN, "shield": NAMES[self._kinds]}
 
     def close(self) -> None:
-        """Ends the worlds, and the shield's copies."""
+        """Destroys the worlds and the shield's copies."""
         self.shield = None
         self.pool.close()
 

@@ -4,21 +4,21 @@
     env = gymnasium.make("redman/HandOverSafeFinger-v0", render_mode="rgb_array")
     envs = gymnasium.make_vec("redman/HandOverSafeFinger-v0", num_envs=64, action_repeat="task")
 
-Env is one world, VectorEnv many in one pool, equal bit for bit to Gymnasium's SyncVectorEnv over as many Env. What a step
-cost is in its info: "cost", the task's own (column 0), and "costs" [cost_dim], as cost_names names them; beside them
-"success", "status" (redman.h, RDM_STATUS_*: 0 where nothing went wrong) and "episode_status", all its bits since the
-episode began. Infos of a reset have the same keys, all 0 but for a first observation that was not finite (2). An episode
-is named by its seed alone: world i of reset(seed=s) has the episode of an Env with reset(seed=s + i).
+Env is one world, VectorEnv many in one pool, equal bit for bit to Gymnasium's SyncVectorEnv over as many Env. The info of a
+step has its costs: "cost", the task's own (column 0), and "costs" [cost_dim], in the order of cost_names; and "success",
+"status" (redman.h, RDM_STATUS_*: 0 where nothing went wrong) and "episode_status", all its bits since the episode began.
+Infos of a reset have the same keys, all 0 except where the first observation was not finite (2). An episode depends on its
+seed alone: world i of reset(seed=s) has the episode of an Env with reset(seed=s + i).
 
-shield=True puts every action under a redman.Shield, which lets it through only where no cost can come of it. Infos then have
-"applied", the action that ran, as the learner would have said it; "intervened", whether it was another; and "shield", what
-was done: "own", "changed", "plan", "unproven" or "projected" (redman.ShieldKind), "" in a reset. Where the shield tries
+With shield=True a redman.Shield checks every action, and accepts it only if it cannot lead to a cost. Infos then have
+"applied", the executed action in the learner's terms; "intervened", whether it differs from the learner's; and "shield",
+what was done: "own", "changed", "plan", "unproven" or "projected" (redman.ShieldKind), "" in a reset. Where the shield tries
 noisy actions (shield={"noise": 0} does not), its own noise continues from episode to episode.
 
 With option modality (rgb, depth, segmentation, points, voxels joined by +) an observation is a dict: "state", the row, and
-an entry for each of them; pictures of one camera are [height][width]..., of several [cameras][height][width]...
-named=True makes it a dict too: an entry for each field in place of "state", in the row's order, so that Gymnasium's
-flatten gives the row.
+an entry for each of them; pictures of one camera are [height][width]..., of several [cameras][height][width]... With
+named=True it is a dict too, with an entry for each field instead of "state", in the row's order, so that Gymnasium's flatten
+gives the row.
 
 Without Gymnasium the two classes have the same methods over spaces of their own, and no id is registered.
 """
@@ -68,14 +68,14 @@ _PICTURES = {"rgb_array": "rgb", "depth_array": "depth"}  # render_mode: what Po
 
 
 class _Named:
-    """What Env and VectorEnv tell of their worlds."""
+    """What Env and VectorEnv have in common."""
 
     worlds: Worlds
     metadata = {"render_modes": list(_PICTURES), "render_fps": 60}
     _spec: Any = None
 
     def _begin(self, worlds: Worlds, render_mode: Optional[str], named: bool) -> tuple[Any, Any]:
-        """Takes the worlds; the spaces of one of them."""
+        """Takes over the worlds; returns the spaces of one of them."""
         if render_mode is not None and render_mode not in _PICTURES:
             raise ArgumentError(f"render_mode: None, {' or '.join(map(repr, _PICTURES))}, not {render_mode!r}")
         self.worlds, self.render_mode, self.named = worlds, render_mode, named
@@ -98,8 +98,8 @@ class _Named:
 
     @property
     def spec(self) -> Any:  # type: ignore[override]
-        """Gymnasium's, with this environment's own max_episode_steps. That of the id has none: make() would wrap a time
-        limit of its own about an episode whose length option max_steps can change."""
+        """Gymnasium's spec with this environment's own max_episode_steps. The spec of the id has none, since make() would
+        wrap the environment in a time limit of its own, while option max_steps can change the length of an episode."""
         return self._spec
 
     @spec.setter
@@ -116,23 +116,23 @@ class _Named:
 
     @property
     def shield(self) -> Optional[Shield]:
-        """What looks at every action; None: nothing."""
+        """The shield that checks every action, or None."""
         return self.worlds.shield
 
     @property
     def cost_limits(self) -> Array:
-        """[cost_dim] limit on each cost's sum over an episode; NaN, as numpy writes None, where there is none."""
+        """[cost_dim] limit on each cost's sum over an episode; NaN where there is none."""
         return np.array([c.limit for c in self.pool.costs.values()], np.float64)
 
     def _seen(self, rows: Array, env: Any = slice(None)) -> Any:
-        """Rows as the observation space has them, with what those worlds see."""
+        """Observations in the form of the observation space, with what the worlds see."""
         if not self.named and not self.worlds.senses:
             return rows
         entries = {name: rows[..., at] for name, at in self.fields.items()} if self.named else {"state": rows}
         return {**entries, **self.worlds.senses.seen(env)}
 
     def _told(self) -> dict[str, Array]:
-        """What infos say of a step, a row for each world."""
+        """The entries of infos after a step, a row for each world."""
         w = self.worlds
         return {"cost": w.cost[:, 0].astype(np.float64), "costs": w.cost.copy(), "success": w.success.copy(),
                 **{key: rows.astype(np.int64) for key, rows in self._flags().items()}, **w.shielded()}
@@ -148,25 +148,26 @@ class _Named:
         return {"status": self.worlds.status, "episode_status": self.worlds.episode_status}
 
     def _began_of(self, i: int) -> Info:
-        """What infos say of a reset: the same keys, and nothing has happened yet but what went wrong in it."""
+        """The entries of infos after a reset: the same keys with empty values, but for what went wrong in the reset."""
         nothing = {key: np.zeros_like(value) if isinstance(value, np.ndarray) else type(value)()
                    for key, value in self._told_of(i).items()}
         return {**nothing, **{key: rows.item(i) for key, rows in self._flags().items()}}
 
     def _pictured(self, i: int) -> Array:
-        """Of a world, as render_mode says."""
+        """The picture of a world, in the form of render_mode."""
         return self.worlds.render(i, _PICTURES[str(self.render_mode)])
 
 
 class Env(_Named, _Env):
     """One world of a task.
 
-    seed: what the first reset() takes that is given none; None draws one from the system.
+    seed: used by the first reset() without a seed; None draws one from the system.
     options: of the task, as `redman tasks NAME` prints them.
-    action_repeat: control steps of a step, whose rewards and costs are summed; "task": as the task's learner decides.
-    center: what an action of 0 does: "initial" takes the pose with which the task's learner begins.
-    shield: True, or a dict of the options of a redman.Shield, its budgets, seed and threads. shield_policy: its first backup, a
-    policy, its file or run folder, or "trained", which holds an action for as many control steps as a step has.
+    action_repeat: control steps of a step, whose rewards and costs are summed; "task": those of a decision of the task's own
+    learner.
+    center: what an action of 0 does; "initial": the pose with which the task's own learner begins.
+    shield: True, or a dict of the options of a redman.Shield, its budgets, seed and threads. shield_policy: its first
+    backup, a policy, its file or run folder, or "trained"; it must hold its actions for as many control steps as a step has.
     named: observations are a dict with an entry for each field.
     """
 
@@ -179,7 +180,7 @@ class Env(_Named, _Env):
         self.observation_space, self.action_space = self._begin(worlds, render_mode, named)
 
     def reset(self, *, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None) -> tuple[Any, Info]:
-        """A new episode: that of the seed, or the next of the world's own stream. There are no options of a reset."""
+        """Begins a new episode: that of the seed, or the next of the world's own stream. options must be empty."""
         self.worlds.no_options(options)
         super().reset(seed=seed)
         self.worlds.reset(seed if seed is None else [seed])
@@ -194,7 +195,7 @@ class Env(_Named, _Env):
                 self._told_of(0))
 
     def render(self) -> Optional[Array]:
-        """A picture [height][width][3] or depth [height][width] in m, 0 where nothing is; None without a render_mode."""
+        """A picture [height][width][3] or depth [height][width] in m, 0 where there is nothing; None without a render_mode."""
         return self._pictured(0) if self.render_mode else None
 
     def close(self) -> None:
@@ -203,14 +204,14 @@ class Env(_Named, _Env):
 
 
 class VectorEnv(_Named, _VectorEnv):
-    """num_envs worlds of a task, stepped together on `threads` threads. Arguments beside Env's:
+    """num_envs worlds of a task, stepped together on `threads` threads. Arguments in addition to those of Env:
 
-    autoreset_mode: "NextStep", "SameStep", "Disabled" or Gymnasium's AutoresetMode; None: as Gymnasium's own has it.
+    autoreset_mode: "NextStep", "SameStep", "Disabled" or Gymnasium's AutoresetMode; None: Gymnasium's default.
     copy: False returns the pool's observations, which the next call overwrites.
 
-    In SameStep mode info["cost"] of worlds whose episode ended is in info["final_info"], as Gymnasium has it;
-    the attributes cost [num_envs] and costs [num_envs][cost_dim] are those of the last step in every mode. What a world
-    saw last is gone by then: SameStep takes no option modality.
+    In SameStep mode, info["cost"] of worlds whose episode ended is in info["final_info"], as in Gymnasium; the attributes
+    cost [num_envs] and costs [num_envs][cost_dim] are those of the last step in every mode. SameStep refuses option
+    modality, since the last pictures of an episode are overwritten by then.
     """
 
     _old = _OLD  # infos as Gymnasium 0.x has them
@@ -241,8 +242,8 @@ class VectorEnv(_Named, _VectorEnv):
         self._ended, self._all = np.zeros(num_envs, bool), np.ones(num_envs, bool)
 
     def reset(self, *, seed: Seeds = None, options: Optional[dict[str, Any]] = None) -> tuple[Any, Info]:
-        """New episodes, everywhere or where options["reset_mask"] [num_envs] is True. seed: s names episode s + i for
-        world i, or a list; where it is None, worlds continue with the streams that they have."""
+        """Begins new episodes, everywhere or where options["reset_mask"] [num_envs] is True. seed: an int s, which means s +
+        i for world i, or a list; where it is None, worlds continue with the streams that they have."""
         self.worlds.no_options(options, ("reset_mask",))
         mask = (options or {}).get("reset_mask")
         if mask is not None and not (isinstance(mask, np.ndarray) and mask.shape == (self.num_envs,)
@@ -276,7 +277,7 @@ class VectorEnv(_Named, _VectorEnv):
         return self._seen(self.worlds.obs.copy() if self.copy else self.worlds.obs)
 
     def _told_but(self, began: Array) -> dict[str, Array]:
-        """The rows of infos, those of a reset where worlds have begun anew."""
+        """The rows of infos, with those of a reset for worlds that have begun a new episode."""
         told = self._told()
         for key, values in told.items():
             if self.mode == "SameStep" or key not in self._flags():  # else those rows are the reset's own
@@ -284,7 +285,7 @@ class VectorEnv(_Named, _VectorEnv):
         return told
 
     def _infos(self, was_ended: Array) -> dict[str, Any]:
-        """What Gymnasium's SyncVectorEnv makes of the infos of its parts."""
+        """Infos in the form of Gymnasium's SyncVectorEnv."""
         ended = self._ended
         infos: Info = {}
         began = np.zeros(self.num_envs, bool)
@@ -302,7 +303,7 @@ class VectorEnv(_Named, _VectorEnv):
         return infos
 
     def _rows(self, told: dict[str, Array], here: Array) -> Info:
-        """The rows with a mask of where they are, 0 or None elsewhere."""
+        """The rows with a mask of the worlds that have one; 0 or None elsewhere."""
         rows: Info = {}
         for key, values in told.items():
             if (self._old and values.ndim > 1) or values.dtype == object:
@@ -342,12 +343,12 @@ class VectorEnv(_Named, _VectorEnv):
 
 
 def shielded_of(worlds: Worlds, i: int) -> Info:
-    """What infos say of the shield in one world."""
+    """The entries of infos about the shield in one world."""
     return {key: rows[i].copy() if rows.ndim > 1 else rows.item(i) for key, rows in worlds.shielded().items()}
 
 
 def _objects(where: Array, make: Any) -> Array:
-    """An array of objects: make(world) where it is, else None."""
+    """An array of objects: make(world) where the mask is true, else None."""
     out = np.full(len(where), None, object)
     for i in np.flatnonzero(where):
         out[i] = make(i)
@@ -375,7 +376,7 @@ def register() -> None:
 
 
 def _vector_entry(task: str) -> Any:
-    """make_vec of Gymnasium 0.x passes on nothing of the spec."""
+    """Needed because make_vec of Gymnasium 0.x does not pass the spec on."""
     def make(num_envs: int = 1, max_episode_steps: Optional[int] = None, **kwargs: Any) -> VectorEnv:
         return VectorEnv(task, num_envs, max_episode_steps=max_episode_steps,
                          **{k: v for k, v in kwargs.items() if k != "task"})

@@ -5,10 +5,10 @@
                            custom_cfgs=redman.omnisafe.configs("hand_over_safe_finger", steps=2e6))
     agent.learn()
 
-Every task has the id Redman<Task>-v0, whose steps are the task's own decisions about its start pose. The four ids of
-OmniSafe's tasks on a GPU (ShadowHandOverSafeFinger, ...) are answered here too, with control steps and plain actions, so
-that its published settings for them apply as they stand. register() adds ids with options; so do env_cfgs where an
-algorithm has them. Cost is the task's own, column 0.
+Every task has the id Redman<Task>-v0: a step is a decision of the task's own learner, and actions are relative to its start
+pose. The four ids of OmniSafe's GPU tasks (ShadowHandOverSafeFinger, ...) exist here too, with single control steps and
+plain actions, so that OmniSafe's published settings for them apply unchanged. register() adds ids with options; algorithms
+with env_cfgs take options there, too. The cost is the task's own, column 0.
 """
 from __future__ import annotations
 
@@ -59,12 +59,12 @@ _IDS: dict[str, tuple[str, _Settings]] = {
 
 
 class Redman(CMDP):
-    """num_envs worlds of a task; an ended episode begins anew in the same step.
+    """num_envs worlds of a task; a world whose episode ends begins another in the same step.
 
-    settings: options, action_repeat, center, threads, shield, shield_policy, as redman.gym.VectorEnv has them, over those of the
-    id. Under a shield an info has "applied" and "intervened" as tensors, and "shield", a list of texts.
-    camera_name and camera_id are what OmniSafe's evaluator gives (its default "track" is the task's first camera).
-    Actions are bounded by -1 and 1 about `center` too.
+    settings: options, action_repeat, center, threads, shield, shield_policy, as in redman.gym.VectorEnv; they override those
+    of the id. With a shield, an info has "applied" and "intervened" as tensors, and "shield", a list of texts. camera_name
+    and camera_id are for OmniSafe's evaluator (its default "track" is the task's first camera). Actions are bounded by -1
+    and 1, with a `center` too.
     """
 
     need_auto_reset_wrapper = False
@@ -94,11 +94,11 @@ class Redman(CMDP):
         return self._worlds.max_episode_steps
 
     def set_seed(self, seed: int) -> None:
-        """Names the episodes of the next reset: seed + i for world i."""
+        """Sets the seeds of the next reset: seed + i for world i."""
         self._worlds.seed = int(seed)
 
     def reset(self, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None) -> tuple[Any, dict[str, Any]]:
-        """New episodes everywhere. There are no options of a reset."""
+        """Begins new episodes everywhere. options must be empty."""
         self._worlds.no_options(options)
         self._worlds.reset(seed)
         return self._tensor(self._worlds.obs), {**self._flags(), **self._shielded(began=True)}
@@ -122,7 +122,7 @@ class Redman(CMDP):
                 for key, rows in (("status", w.status), ("episode_status", w.episode_status))}
 
     def _shielded(self, began: bool = False) -> dict[str, Any]:
-        """What the shield did in each world; nothing yet where they have begun."""
+        """What the shield did in each world; empty for worlds that have just begun an episode."""
         told = self._worlds.shielded()
         if not told:
             return {}
@@ -146,8 +146,8 @@ class Redman(CMDP):
 
 
 def register(name: str, task: str, **settings: Any) -> str:
-    """An id of your own for a task with settings: action_repeat and center of the task's own unless given, options,
-    threads. Returns it."""
+    """Registers an id of your own for a task with settings (options, threads, ...) and returns it; action_repeat and center
+    are the task's own unless given."""
     if "/" in name or name in _IDS:
         raise ArgumentError(f"{name}: an id without / that is not taken")
     _IDS[name] = task, {**_DECISIONS, **settings}
@@ -157,11 +157,11 @@ def register(name: str, task: str, **settings: Any) -> str:
 
 def configs(task: str, algo: str = "PPOLag", steps: float = 2e6, options: Optional[Mapping[str, Any]] = None,
             num_envs: int = 64) -> dict[str, Any]:
-    """custom_cfgs with which an algorithm of OmniSafe learns Redman<Task>-v0 as redman's own would: discount of its
-    decisions, first deviation, limit, normalisation, networks and rates, as far as the algorithm has them.
+    """custom_cfgs with which an algorithm of OmniSafe learns Redman<Task>-v0 like redman's own: discount, initial standard
+    deviation, limit, normalisation, networks and learning rates, as far as the algorithm has them.
 
-    steps: control steps of one world, summed over worlds. options: of the task; where an algorithm has no env_cfgs to
-    take them, give it an id of register() with the same. Change what the dict holds before it is given.
+    steps: control steps summed over worlds. options: of the task; if an algorithm has no env_cfgs for them, use an id of
+    register() with the same options. You may change the returned dict before passing it on.
     """
     if algo not in ALGORITHM2TYPE:
         raise NotFoundError(f"algorithm {algo!r}: OmniSafe has no such one{nearest(algo, ALGORITHM2TYPE)}")

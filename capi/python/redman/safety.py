@@ -1,4 +1,4 @@
-"""Tasks as environments of Safety-Gymnasium: a step gives six values, the cost third.
+"""Tasks as environments of Safety-Gymnasium: a step returns six values, the third of which is the cost.
 
     import safety_gymnasium, redman.safety
     env = safety_gymnasium.make("SafetyRedmanHandOverSafeFinger-v0")
@@ -7,10 +7,10 @@
 Every task has the id SafetyRedman<Task>-v0, and Safety<Task>-v0 too where Safety-Gymnasium has no such id of its own:
 SafetyPointGoal1-v0 and eleven more are its own environments, not ours.
 
-info names the costs as Safety-Gymnasium does: cost_sum is the task's own (column 0), cost_<name> every other. shield=True is
-that of redman.gym. Env and
-VectorEnv need Gymnasium alone, or nothing; the ids need Safety-Gymnasium. VectorEnv ends as SafetySyncVectorEnv does:
-a new episode in the same step, info["final_observation"] and info["final_info"].
+info names the costs as Safety-Gymnasium does: cost_sum is the task's own (column 0), cost_<name> is each other one.
+shield=True is as in redman.gym. Env and VectorEnv need at most Gymnasium; the ids need Safety-Gymnasium. VectorEnv treats
+the end of an episode like SafetySyncVectorEnv: a new episode in the same step, with info["final_observation"] and
+info["final_info"].
 """
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class Env(_Told, gym.Env):
 
 
 class VectorEnv(_Told, gym.VectorEnv):
-    """num_envs worlds of a task in one pool; arguments as redman.gym.VectorEnv but for autoreset_mode."""
+    """num_envs worlds of a task in one pool; arguments as redman.gym.VectorEnv, without autoreset_mode."""
 
     _old = True
 
@@ -71,7 +71,7 @@ class VectorEnv(_Told, gym.VectorEnv):
 
 
 def env_id(task: str) -> str:
-    """The id of a task, which no environment but ours has."""
+    """The id of a task that belongs to no other environment."""
     return f"SafetyRedman{gym.camel(task)}-v0"
 
 

@@ -7,10 +7,11 @@
     env = VecNormalize(env, norm_reward=False, clip_obs=5)
     PPO("MlpPolicy", env, **redman.sb3.ppo_kwargs("hand_over_safe_finger")).learn(500_000)
 
-Its learners know no costs: each info has "cost", "costs", "success", "status" and "episode_status" as in redman.gym, and
-penalty=w takes w times the cost from the reward; shield=True puts actions under a shield as there. The info of an episode that ended has "episode" {r, l, t}, as Monitor
-writes it, "is_success" (there was one) and "episode_cost", the sum of each cost by name. CostCallback logs those sums:
-learn(500_000, callback=redman.sb3.CostCallback()) adds rollout/ep_cost_mean/<name> to what is logged.
+Its learners ignore costs: each info has "cost", "costs", "success", "status" and "episode_status" as in redman.gym, and
+penalty=w subtracts w times the cost from the reward; shield=True works as there. The info at the end of an episode has
+"episode" {r, l, t}, as Monitor writes it, "is_success" (whether there was one) and "episode_cost", the sum of each cost by
+name. CostCallback logs those sums: learn(500_000, callback=redman.sb3.CostCallback()) adds rollout/ep_cost_mean/<name> to
+the log.
 """
 from __future__ import annotations
 
@@ -45,11 +46,11 @@ Indices = Union[None, int, Iterable[int]]
 
 
 class VecEnv(_VecEnv):
-    """num_envs worlds of a task in one pool; an ended episode begins anew in the same step, and its last observation is
-    info["terminal_observation"]. Arguments are those of redman.gym.VectorEnv, and penalty.
+    """num_envs worlds of a task in one pool; a world whose episode ends begins another in the same step, and the last
+    observation is info["terminal_observation"]. Arguments are those of redman.gym.VectorEnv, and penalty.
 
-    seed(s) names the episodes of the next reset, s + i for world i. The worlds are no objects of their own: attributes
-    and methods of "an environment" are those of this class, the same for all; env_method("render") is the exception.
+    seed(s) sets the seeds of the next reset, s + i for world i. The worlds are not separate objects: attributes and methods
+    of "an environment" are those of this class, the same for all, except in env_method("render").
     """
 
     def __init__(self, task: str, num_envs: int = 1, *, seed: Optional[int] = None,
@@ -73,7 +74,7 @@ class VecEnv(_VecEnv):
 
     @property
     def shield(self) -> Optional[Shield]:
-        """What looks at every action; None: nothing."""
+        """The shield that checks every action, or None."""
         return self.worlds.shield
 
     @property
@@ -82,7 +83,7 @@ class VecEnv(_VecEnv):
         return self.worlds.pool
 
     def reset(self) -> Array:
-        """New episodes: those of seed(), else the next of the worlds' own streams. There are no options of a reset."""
+        """Begins new episodes: those of seed(), else the next of the worlds' own streams. There are no options."""
         for options in self._options:
             self.worlds.no_options(options)
         self.worlds.reset(None if all(s is None for s in self._seeds) else self._seeds)
@@ -120,7 +121,7 @@ class VecEnv(_VecEnv):
     @staticmethod
     def _infos(costs: Array, success: Array, status: Array, all_status: Array, cut: Array,
                shielded: Mapping[str, Array]) -> list[dict[str, Any]]:
-        """What a step tells of each world."""
+        """The info of a step for each world."""
         more = {key: list(rows) if rows.ndim > 1 else rows.tolist() for key, rows in shielded.items()}
         return [{"cost": cost, "costs": row, "success": won, "status": int(bits), "episode_status": int(all_bits),
                  "TimeLimit.truncated": late, **{key: values[i] for key, values in more.items()}}
@@ -129,11 +130,11 @@ class VecEnv(_VecEnv):
 
     @staticmethod
     def _nothing(shielded: Mapping[str, Array]) -> dict[str, Array]:
-        """What a reset tells of a shield."""
+        """The entries about a shield after a reset."""
         return {key: np.full_like(rows, "" if rows.dtype == object else 0) for key, rows in shielded.items()}
 
     def _finished(self, i: int) -> dict[str, Any]:
-        """What the info of an ended episode has more; its sums begin anew."""
+        """The further entries of the info at the end of an episode; its sums begin anew."""
         told = {"episode": {"r": round(float(self._return[i]), 6), "l": int(self._length[i]),
                             "t": round(time.time() - self._began, 6)},
                 "is_success": bool(self._success[i]),
@@ -143,7 +144,7 @@ class VecEnv(_VecEnv):
         return told
 
     def close(self) -> None:
-        """Ends the worlds."""
+        """Destroys the worlds."""
         self.worlds.close()
 
     def get_images(self) -> list[Array]:
@@ -172,7 +173,7 @@ class VecEnv(_VecEnv):
         return [method(*method_args, env=i, **method_kwargs) for i in chosen]
 
     def env_is_wrapped(self, wrapper_class: type, indices: Indices = None) -> list[bool]:
-        """No world has a wrapper; but infos have what a Monitor writes, and who asks for one is told that it is there."""
+        """No world has a wrapper, but infos have what a Monitor writes, so the answer for Monitor is true."""
         return [wrapper_class is _Monitor for _ in self._get_indices(indices)]
 
 
@@ -194,8 +195,8 @@ class CostCallback(_BaseCallback):
 
 
 def ppo_kwargs(task: str, options: Optional[Mapping[str, Any]] = None, num_envs: int = 64) -> dict[str, Any]:
-    """Arguments with which PPO learns a task as redman's own would, over
-    VecNormalize(VecEnv(task, num_envs, action_repeat="task", center="initial"), norm_reward=False, clip_obs=5)."""
+    """Arguments with which PPO learns a task like redman's own, with VecNormalize(VecEnv(task, num_envs,
+    action_repeat="task", center="initial"), norm_reward=False, clip_obs=5)."""
     from torch import nn
     d = defaults(task, options)
     rows = num_envs * d.horizon

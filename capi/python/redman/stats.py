@@ -1,14 +1,14 @@
-"""Numbers over several runs: what may be said of algorithms that were trained with a few seeds each.
+"""Statistics over several runs, to compare algorithms that were trained with a few seeds each.
 
     from redman import stats
     score = lambda run, task: stats.normalised(run.evaluate().return_mean, low[task], high[task])
     ours = {task: [score(redman.train(task, seed=s), task) for s in range(10)] for task in tasks}
     stats.iqm(ours), stats.interval(ours), stats.improvement(ours, theirs), stats.ranks({"ours": ours, "theirs": theirs})
 
-A score is a number of one run, the greater the better: negate a cost. Scores by task are a dict {task: scores of its runs}, or rows
-[tasks][runs], which may differ in length; numbers alone are the runs of one task. Scores of several tasks are joined, so
-they are to be of one scale: normalised() makes them so. A score that is not finite is refused: leave the run out, or give it
-the score of a failure, and say which.
+A score is a number for one run, the greater the better: negate a cost. Scores by task are a dict {task: scores of its runs},
+or rows [tasks][runs], which may differ in length; a plain list of numbers is the runs of one task. Scores of several tasks
+are pooled, so they must be on the same scale: normalised() does that. A score that is not finite is refused: leave the run
+out, or give it the score of a failure, and report which you did.
 
 Agarwal, Schwarzer, Castro, Courville, Bellemare: Deep Reinforcement Learning at the Edge of the Statistical Precipice,
 NeurIPS 2021, is the source of iqm, interval and improvement. Intervals are of the percentile bootstrap (Efron, Tibshirani: An
@@ -45,8 +45,8 @@ def iqm(scores: Scores) -> float:
 
         IQM = 1 / (n - 2 c)  sum x_(i), i = c + 1 ... n - c,  c = floor(n / 4)
 
-    It does not move with a few runs that are far off, as the mean does, and uses half of the scores, where a median uses one or
-    two (Agarwal et al. 2021, section 4.3).
+    Unlike the mean, it is not affected by a few outliers, and it uses half of the scores, where a median uses one or two
+    (Agarwal et al. 2021, section 4.3).
     """
     return float(iqm_of(np.concatenate(list(_by_task(scores).values()))[None])[0])
 
@@ -56,7 +56,7 @@ def interval(scores_by_task: Scores, level: float = 0.95) -> tuple[float, float]
     (1 - level) / 2 and (1 + level) / 2 of the resamples' interquartile means are its ends (stratified bootstrap, Agarwal et al.
     2021, section 4.1).
 
-    Each task has 2 runs or more. With fewer than about 5 of few tasks in all the interval is too narrow.
+    Each task needs 2 runs or more. With fewer than about 5 runs of few tasks the interval is too narrow.
     """
     tasks = _of_several(scores_by_task, "scores_by_task")
 
@@ -68,14 +68,14 @@ def interval(scores_by_task: Scores, level: float = 0.95) -> tuple[float, float]
 
 
 def improvement(a: Scores, b: Scores, level: float = 0.95) -> Improvement:
-    """The probability that a run of algorithm a is better than a run of b on a task that is drawn alike, and its interval by
-    the bootstrap of interval(), of the runs of both.
+    """The probability that a run of algorithm a is better than a run of b on a task drawn at random, and its interval by the
+    bootstrap of interval() over the runs of both.
 
         P(A > B) = 1 / M  sum over tasks m of  1 / (N K)  sum over runs i, j of  S(a_mi, b_mj)
         S(x, y) = 1 where x > y, 1/2 where x = y, 0 where x < y
 
-    with M tasks, N and K runs: the Mann-Whitney statistic of each task (Mann, Whitney: Ann. Math. Statist. 18, 1947; Agarwal et
-    al. 2021, section 4.3). It says how often a is better, not by how much. Where the interval is above 1/2, a is better.
+    with M tasks, N and K runs: the Mann-Whitney statistic of each task (Mann, Whitney: Ann. Math. Statist. 18, 1947; Agarwal
+    et al. 2021, section 4.3). It says how often a is better, not by how much. If the interval is above 1/2, a is better.
     """
     ours, theirs = _of_several(a, "a"), _of_several(b, "b")
     _need_same(ours, theirs, "a", "b")
@@ -109,9 +109,9 @@ def ranks(scores: Mapping[str, Scores], level: float = 0.95) -> list[list[str]]:
     of a group first. An algorithm is in two groups where it overlaps with both, as in a diagram of critical differences
     (Demsar: Statistical Comparisons of Classifiers over Multiple Data Sets, JMLR 7, 2006).
 
-    Algorithms that are in no group together differ. Those that are in one may still: improvement() is the sharper question
-    (Schenker, Gentleman: On Judging the Significance of Differences by Examining the Overlap Between Confidence Intervals, The
-    American Statistician 55, 2001).
+    Algorithms that share no group differ. Those that share one may still differ: improvement() is the sharper test
+    (Schenker, Gentleman: On Judging the Significance of Differences by Examining the Overlap Between Confidence Intervals,
+    The American Statistician 55, 2001).
     """
     if not isinstance(scores, Mapping) or not scores:
         raise UsageError("scores: a dict {algorithm: scores by task}")
@@ -135,8 +135,8 @@ def iqm_of(samples: Array) -> Array:
 
 
 def bootstrap(sizes: Sequence[int], statistic: Callable[[Samples], Array], level: float) -> Array:
-    """The lower and upper end of a percentile bootstrap's interval of statistic(), which is given rows that were drawn with
-    replacement from strata of these sizes; an axis more where a statistic has columns."""
+    """The lower and upper end of a percentile bootstrap's interval of statistic(), which is called with rows drawn with
+    replacement from strata of these sizes; with an extra axis where the statistic has columns."""
     if not 0 < level < 1:
         raise ArgumentError(f"level: {level} is not between 0 and 1")
     random = np.random.RandomState(_SEED)  # its stream is the same in all versions of numpy
@@ -175,7 +175,7 @@ def _by_task(scores: Any, name: str = "scores") -> dict[Hashable, Array]:
 
 
 def _of_several(scores: Any, name: str) -> dict[Hashable, Array]:
-    """The same of two runs or more of each task."""
+    """The same, for tasks that have two runs or more each."""
     tasks = _by_task(scores, name)
     for task, runs in tasks.items():
         if len(runs) < 2:
