@@ -30,10 +30,11 @@ WHAT IS THERE. help(redman.Pool) and so on tell more.
                     VersionError
     the library     build, features, version
 
-RULES. Arrays are numpy's, [rows][...], and SI units hold: m, rad, N, s. pool.obs, pool.reward and their like are views that the
-next step writes: copy what is to stay. Same seed, same bytes, for any number of threads. A wrong argument is an error that says
-what it may be; an error is also the Python exception that one would expect, a NotFoundError a LookupError. A file stands where a
-name does: Pool("press.task"), options={"hand": "my.urdf", "object": "mug.object"}, evaluate("runs/first").
+RULES. Arrays are numpy's, [rows][...], in SI units: m, rad, N, s. pool.obs, pool.reward and the like are views that the next
+step overwrites: copy what you want to keep. The same seed gives the same bytes for any number of threads. For a wrong
+argument, the error says what it may be; an error is also the Python exception that one would expect: a NotFoundError is a
+LookupError. A file may be given instead of a name: Pool("press.task"), options={"hand": "my.urdf", "object": "mug.object"},
+evaluate("runs/first").
 """
 from __future__ import annotations
 

@@ -36,7 +36,7 @@ class _Drawn:
         return as_image(self._repr_svg_())
 
     def plot(self) -> _Drawn:
-        """Itself, which draws itself as the last line of a cell of a notebook; save writes it elsewhere."""
+        """Returns the curve itself, which a notebook draws when it is the last line of a cell; elsewhere use save."""
         return self
 
     def save(self, path: Union[str, os.PathLike[str]]) -> None:

@@ -1,7 +1,7 @@
-"""Definitions: what a robot, an object or a body is, as a dict with the names of the header's struct.
+"""Definitions of robots, objects and bodies, as dicts with the member names of the header's structs.
 
-A row of a list is a dict too; kinds are their words ("revolute", "box"), a pose is [x, y, z] or [x, y, z, qx, qy, qz, qw], and
-counts follow from the lists. A row of links may be given by its name.
+A row of a list is a dict too; kinds are words ("revolute", "box"), a pose is [x, y, z] or [x, y, z, qx, qy, qz, qw], and
+counts are taken from the lists. A row of links may be given by the link's name.
 """
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def pose_of(value: Any, where: str = "pose") -> _abi.rdm_pose:
 
 
 def fill(struct: ctypes.Structure, values: Mapping[str, Any], where: str, links: Iterable[str] = ()) -> list[Any]:
-    """Writes values into a struct that was initialised; returns what it points at, to be kept as long as it is used."""
+    """Writes values into an initialised struct; returns what it points at, which must be kept as long as the struct is used."""
     kind, kept = type(struct), list[Any]()
     members = {name: of for name, of, *_ in kind._fields_ if name != "struct_size" and not name.startswith("reserved")}
     rows = list(links)
@@ -104,7 +104,7 @@ def _word(kind: type[ctypes.Structure], name: str, word: str, where: str, links:
 
 
 def plain(struct: ctypes.Structure) -> dict[str, Any]:
-    """A struct without its arrays and what counts them, as fill takes it."""
+    """A struct without its arrays and their counts, in the form that fill takes."""
     out: dict[str, Any] = {}
     for name, of, *_ in type(struct)._fields_:
         if name == "struct_size" or name.startswith(("reserved", "num_")):

@@ -24,7 +24,7 @@ def _beside(path: Path) -> str:
 
 
 def must_exist(path: Union[str, os.PathLike[str]], what: str) -> None:
-    """MissingFileError, with the nearest name, where there is nothing; what: whose file it is."""
+    """Raises MissingFileError with the nearest name if there is no such file; what: the kind of file."""
     if not os.path.exists(path):
         raise MissingFileError(f"{what} {os.fspath(path)}: there is no such file{_beside(Path(path))}")
 

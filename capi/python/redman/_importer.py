@@ -22,7 +22,7 @@ Loaded = TypeVar("Loaded", Robot, Object, TaskInfo)
 
 @lru_cache(maxsize=None)
 def importer() -> ctypes.CDLL:
-    """The library, which stands beside libredman."""
+    """The library redman_import, which is beside libredman."""
     named, own = os.environ.get("REDMAN_IMPORT_LIBRARY"), Path(lib._name).absolute()
     if named:
         candidates = [named]
@@ -61,7 +61,7 @@ _loaded: dict[tuple[str, str], tuple[Any, int]] = {}
 
 def _once(kind: str, path: Source, settings: Any, alive: Callable[[int], bool], at: Callable[[int], Loaded],
           make: Callable[[Optional[int]], Loaded]) -> Loaded:
-    """What was made of a file as it is now; make is given the number of what an older version of it was."""
+    """What was made from the present version of a file; make is given the number of what was made from an older version."""
     if isinstance(path, bytes):
         return make(None)
     must_exist(path, kind)
@@ -81,20 +81,21 @@ def load_robot(path: Source, *, name: Optional[str] = None, kind: Optional[str] 
                mount: Optional[str] = None, flange: Optional[str] = None, folder: Union[None, str, os.PathLike[str]] = None,
                packages: Union[None, str, os.PathLike[str]] = None, density: float = 0.0, slide_range: float = 0.0,
                skip_meshes: bool = False, mend_inertia: bool = False, check: bool = False) -> Robot:
-    """A robot of a URDF, MJCF or .robot file, or of the bytes of one. It is registered under its name, and option hand or arm of
-    the hand tasks takes it; its notes say what was dropped, changed and guessed.
+    """Loads a robot from a URDF, MJCF or .robot file, or from the bytes of one, and registers it under its name, for option
+    hand or arm of the hand tasks. Its notes say what was dropped, changed and guessed.
 
         robot = redman.load_robot("my.urdf", tips=["index_tip", "thumb_tip"], check=True)
         for note in robot.notes:
             print(note.line, note.text)
 
-    name: None: the file's. kind: "hand", "arm", "other"; None: guessed, as are palm, tips, mount and flange, which are links (or
-    sites). format: "urdf", "mjcf", "robot", "auto": by the first element. root: the link whose subtree is taken. folder: where the
-    meshes of bytes are. packages: the folder of package:// names. density: kg/m3 of URDF links without <inertial>. slide_range: m
-    to either side, of a joint that slides without an end. skip_meshes: those that cannot be read are dropped. mend_inertia:
-    moments that break the triangle rule are raised. check: tries the robot alone and adds notes of what it finds.
+    name: None: the name in the file. kind: "hand", "arm", "other"; None: guessed, as are palm, tips, mount and flange, which
+    are links (or sites). format: "urdf", "mjcf", "robot", or "auto": by the first element. root: the link whose subtree is
+    read. folder: where meshes are, for bytes. packages: the folder of package:// names. density: kg/m3 of URDF links without
+    <inertial>. slide_range: m to either side, range of a sliding joint without limits. skip_meshes: drops meshes that cannot
+    be read. mend_inertia: raises moments that violate the triangle inequality. check: tries the robot alone and adds notes
+    of what it finds.
 
-    A file that was loaded and has not changed is not read again; one that has takes the place of what it was.
+    An unchanged file is not read again; a changed one replaces what was loaded from it.
     """
     config = sized(_import_abi.rdm_import_config)
     _check(importer().rdm_import_config_init(byref(config), ctypes.sizeof(config)))
@@ -128,9 +129,9 @@ def load_robot(path: Source, *, name: Optional[str] = None, kind: Optional[str] 
 
 
 def load_object(path: Source) -> Object:
-    """An object of an .object file, or of the bytes of one; registered under its name, for option object.
+    """Loads an object from an .object file, or from the bytes of one, and registers it under its name, for option object.
 
-    A file that was loaded and has not changed is not read again; one that has takes the place of what it was.
+    An unchanged file is not read again; a changed one replaces what was loaded from it.
     """
     def make(old: Optional[int]) -> Object:
         if isinstance(path, bytes):
@@ -148,10 +149,10 @@ def load_object(path: Source) -> Object:
 
 
 def load_task(path: Source) -> TaskInfo:
-    """A task of a .task file, or of the bytes of one: its scene, observation, rewards and costs as text. It is registered under
-    its name, and is a task like the library's own for all that takes one.
+    """Loads a task from a .task file, or from the bytes of one: its scene, observation, rewards and costs as text. It is
+    registered under its name, and can be used wherever a task of the library can.
 
-    A file that was loaded and has not changed is not read again; one that has takes the place of what it was.
+    An unchanged file is not read again; a changed one replaces what was loaded from it.
     """
     def make(old: Optional[int]) -> TaskInfo:
         if old is not None:
@@ -214,7 +215,7 @@ def _alive(call: Callable[..., int], kind: type[ctypes.Structure], number: int) 
 
 
 class _naming:
-    """Errors begin with the file that they are about."""
+    """Makes errors begin with the name of the file that they are about."""
 
     def __init__(self, path: Source) -> None:
         self._file = "" if isinstance(path, bytes) else os.fspath(path)

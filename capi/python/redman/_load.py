@@ -1,4 +1,4 @@
-"""load: what a file or a folder holds, whatever it is."""
+"""load: reads any file or folder of redman."""
 from __future__ import annotations
 
 import os
@@ -27,10 +27,10 @@ _LOADERS: dict[str, Callable[[Any], Any]] = {
 
 
 def load(path: Union[str, os.PathLike[str]]) -> Any:
-    """What a file or a folder holds: a Policy of a policy file (.rdm) or a run folder, a Recording (.npz), a Robot (.urdf, .xml,
-    .mjcf, .robot), an Object (.object), a Task (.task), a Map (.ot, .bt), a Curve (progress.csv).
+    """Loads what a file or a folder contains: a Policy (.rdm or a run folder), a Recording (.npz), a Robot (.urdf, .xml,
+    .mjcf, .robot), an Object (.object), a Task (.task), a Map (.ot, .bt) or a Curve (progress.csv).
 
-    Agent.load and Agent.read_checkpoint read what an agent has saved: it takes an agent of the same configuration.
+    For what an agent has saved, use Agent.load or Agent.read_checkpoint of an agent with the same configuration.
     """
     must_exist(path, "load")
     file = Path(path)

@@ -1,4 +1,4 @@
-"""make and make_vec: environments by Gymnasium's words."""
+"""make and make_vec: environments in the manner of Gymnasium."""
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
@@ -10,13 +10,13 @@ if TYPE_CHECKING:
 
 
 def make(task: TaskName, **settings: Any) -> gym.Env:
-    """One environment of Gymnasium's form, redman.gym.Env(task, ...), with or without Gymnasium: reset gives (obs, info), step five
-    values."""
+    """One environment with Gymnasium's interface, redman.gym.Env(task, ...), with or without Gymnasium: reset returns (obs,
+    info), step five values."""
     from .gym import Env
     return Env(task_name(task), **settings)
 
 
 def make_vec(task: TaskName, num_envs: int = 1, **settings: Any) -> gym.VectorEnv:
-    """A vector environment of Gymnasium's form, redman.gym.VectorEnv(task, num_envs, ...)."""
+    """A vector environment with Gymnasium's interface, redman.gym.VectorEnv(task, num_envs, ...)."""
     from .gym import VectorEnv
     return VectorEnv(task_name(task), num_envs, **settings)

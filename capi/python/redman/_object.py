@@ -1,4 +1,4 @@
-"""Object: what hands handle: those of the library, of files, and of your own."""
+"""Object: what hands handle; objects of the library, from files, and of your own."""
 from __future__ import annotations
 
 import ctypes
@@ -39,14 +39,15 @@ class Object(_abi.ObjectInfo):
 
     @staticmethod
     def check(**definition: Any) -> None:
-        """Raises what create would, but for a name that is taken; adds nothing."""
+        """Raises what create would, except for a name that is already used; adds nothing."""
         struct, kept = _struct(definition)
         check(lib.rdm_object_check(byref(struct)))
         del kept
 
     @property
     def definition(self) -> dict[str, Any]:
-        """All that it was made from, as create takes it: rdm_object_def as a dict, in the frame at its centre of mass."""
+        """What the object was made from, in the form that create takes: rdm_object_def as a dict, in the frame at its centre
+        of mass."""
         struct = filled(_abi.rdm_object_def, lib.rdm_object_get_def, self.number)
         out = plain(struct)
         out["shapes"] = []
@@ -65,7 +66,7 @@ class Object(_abi.ObjectInfo):
         write_whole(path, object_text(self.number), "object")
 
     def remove(self) -> None:
-        """Takes an object of your own, or of a file, out of this process; pools that have it keep it."""
+        """Removes an object of your own, or of a file, from this process; pools that have it keep it."""
         check(lib.rdm_object_destroy(self.number))
 
     def __repr__(self) -> str:

@@ -1,5 +1,5 @@
-"""Texts of a task, robots and objects of one's own that a run folder keeps in config.json, so that it is whole elsewhere: the
-members task_file, robot_files and object_files, as the command `redman train` writes and reads them."""
+"""Texts of a task, robots and objects of your own that a run folder keeps in config.json, so that it is complete on other
+machines: the members task_file, robot_files and object_files, as the command `redman train` writes and reads them."""
 from __future__ import annotations
 
 from typing import Any, Iterator, Mapping
@@ -15,7 +15,7 @@ MEMBERS = ("task_file", "robot_files", "object_files")
 
 
 def kept(options: Mapping[str, Any]) -> dict[str, dict[str, str]]:
-    """robot_files and object_files of the options of a task: of each name that is not the library's own."""
+    """robot_files and object_files for the options of a task: one for each name that is not the library's own."""
     names = {str(value) for value in options.values()}
     every = {"robot_files": {name: (robot_text, robot.number) for name, robot in robots().items() if robot.number in added},
              "object_files": {name: (object_text, thing.number) for name, thing in objects().items() if thing.own}}
@@ -31,7 +31,8 @@ def kept(options: Mapping[str, Any]) -> dict[str, dict[str, str]]:
 
 
 def load_kept(config: Mapping[str, Any], where: str) -> None:
-    """Registers what a config.json holds and this process does not have. ArgumentError for another one of the same name."""
+    """Registers what a config.json holds and this process does not have yet. ArgumentError if the name is used by something
+    else."""
     for kind, name, data in _texts(config):
         if not _is_known(kind, name):
             _LOADERS[kind](data)

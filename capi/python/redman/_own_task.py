@@ -1,4 +1,4 @@
-"""Task: a task of your own in Python; its functions see all worlds of a pool at once, as rows of numpy arrays."""
+"""Task: a task of your own in Python; its functions handle all worlds of a pool at once, as rows of numpy arrays."""
 from __future__ import annotations
 
 import ctypes
@@ -34,7 +34,7 @@ _MANY = ctypes.CFUNCTYPE(c_int32, c_void_p, c_void_p, c_void_p)
 
 
 class Verdict(NamedTuple):
-    """What Task.judge returns of n worlds: each member is [n], or a number for all of them."""
+    """What Task.judge returns for n worlds: each member is [n], or one number for all of them."""
 
     reward: Any
     cost: Mapping[str, Any] = {}  # by name, at least 0 (a flag counts 1); what is left out is 0
@@ -44,7 +44,7 @@ class Verdict(NamedTuple):
 
 
 class Task:
-    """A task of your own: subclass it, and give the class wherever a task's name is taken.
+    """A task of your own: subclass it, and give the class wherever a task's name can be given.
 
         class PushBall(redman.Task):
             "Push a ball to the origin."
@@ -73,9 +73,9 @@ class Task:
         redman.check_task(PushBall)
         run = redman.train(PushBall, steps=3e5)
 
-    w is a Worlds of n rows: all worlds of the pool, or those that are asked about; a row depends on its own world alone, which
-    check_task tries. What an episode has to remember is in `state`. What a function raises ends the episodes of the call's
-    worlds, and comes out of pool.step with its traceback.
+    w is a Worlds of n rows: all worlds of the pool, or some of them; a row must depend on its own world alone, which
+    check_task tests. What an episode has to remember is in `state`. An exception in a function ends the episodes of the
+    worlds in that call, and is raised by pool.step with its traceback.
     """
 
     name: ClassVar[str] = ""  # letters, digits, '_'; the class's own name in lower case unless it is set
@@ -97,7 +97,7 @@ class Task:
         """Makes the world, once a pool; keep the numbers of its parts in self."""
 
     def reset(self, w: Worlds) -> None:
-        """Starts episodes: the worlds are as scene made them. w.uniform and w.normal draw."""
+        """Starts episodes: the worlds are as scene made them. w.uniform and w.normal draw random numbers."""
 
     def control(self, w: Worlds, action: Any) -> None:
         """Before a control step: from clipped actions [n][action_dim] to targets and pushes."""
@@ -115,14 +115,14 @@ class Task:
 
     @classmethod
     def register(cls) -> str:
-        """Adds the task to the list of tasks, once; its name. What takes a task by name calls it."""
+        """Adds the task to the list of tasks, once, and returns its name. Functions that take a task call it."""
         if cls.__dict__.get("_number") is None:  # a subclass is a task of its own
             cls._number = _Description(cls).create()
         return cls.task_name()
 
     @classmethod
     def unregister(cls) -> None:
-        """Takes it out of the list again, so that a changed class of that name can be registered; pools that have it keep it."""
+        """Removes it from the list, so that a changed class of that name can be registered; pools that have it keep it."""
         number = cls.__dict__.get("_number")
         if number is not None:
             check(lib.rdm_task_destroy(number))
@@ -135,8 +135,8 @@ class Task:
 
 
 class RowTask(Task):
-    """A task without bodies: what a world is, is its state, and step makes the next one. Subclass it as Task, with step in the
-    place of scene, control and judge.
+    """A task without bodies: a world is its state alone, and step computes the next one. Subclass it like Task, with step
+    instead of scene, control and judge.
 
         class Cart(redman.RowTask):
             action_dim, fields, costs = 1, {"position": 1, "velocity": 1}, {"fast": (1, "faster than 1 m/s")}
@@ -160,11 +160,12 @@ class RowTask(Task):
         cls.state = {**cls.state, "last_action": cls.action_dim}
 
     def scene(self, s: SceneBuilder) -> None:
-        """One body that nothing moves: an engine steps something."""
+        """Adds one body that nothing moves, since an engine needs something to step."""
         s.sphere("marker", 0.01, mass=0.01, weightless=True)
 
     def step(self, w: Worlds, action: Any) -> Any:
-        """Makes the next state of the worlds, from clipped actions [n][action_dim]: a Verdict, or the rewards [n] alone."""
+        """Computes the next state of the worlds from clipped actions [n][action_dim]; returns a Verdict, or the rewards [n]
+        alone."""
         raise NotImplementedError(f"{type(self).__name__}.step: it makes the next state and gives the reward")
 
     def control(self, w: Worlds, action: Any) -> None:
@@ -172,7 +173,7 @@ class RowTask(Task):
         w.state["last_action"] = action
 
     def judge(self, w: Worlds) -> Any:
-        """What step says."""
+        """Returns the verdict of step."""
         return self.step(w, w.state["last_action"].astype(np.float32))
 
 
@@ -181,7 +182,7 @@ def _pair(value: Any) -> bool:
 
 
 class _Description:
-    """The rdm_task_def of a class, with all that it points at and the functions that the library calls."""
+    """The rdm_task_def of a class, with everything that it points at and the functions that the library calls."""
 
     def __init__(self, kind: type[Task]) -> None:
         self.kind, self.kept = kind, list[Any]()
@@ -333,7 +334,7 @@ class _Description:
         return self.state.fields[_STREAM][1], self.state_bytes
 
     def _array(self, address: int, n: int, dtype: Any, width: int = 0) -> Any:
-        """Rows of the library's memory, which it uses again and again."""
+        """Rows of the library's memory, which it reuses between calls."""
         key = address, dtype
         known = self.arrays.get(key)
         if known is None or len(known) < n:

@@ -1,4 +1,4 @@
-"""Files where a name is meant: a task, a robot or an object that a file describes stands for the name that it has."""
+"""Files instead of names: a file that describes a task, a robot or an object stands for the name of what it describes."""
 from __future__ import annotations
 
 import os
@@ -10,12 +10,12 @@ ENDINGS = {"task": (".task",), "robot": (".urdf", ".xml", ".mjcf", ".robot"), "o
 
 
 def is_file(kind: str, name: Any) -> bool:
-    """Whether a name of a task, a robot or an object is a file of one."""
+    """Whether a given name of a task, a robot or an object is a file."""
     return isinstance(name, (str, os.PathLike)) and str(name).lower().endswith(ENDINGS[kind])
 
 
 def named(kind: str, name: Union[str, os.PathLike[str]]) -> str:
-    """The name; that of what a file describes, which is loaded unless it was."""
+    """The name; for a file, the name of what it describes, which is loaded if it was not yet."""
     if not is_file(kind, name):
         return os.fspath(name)
     from . import _importer
@@ -24,11 +24,11 @@ def named(kind: str, name: Union[str, os.PathLike[str]]) -> str:
 
 
 def by_name(options: Mapping[str, Any]) -> dict[str, Any]:
-    """Options where a Robot or an Object is its name."""
+    """Options with each Robot or Object replaced by its name."""
     return {key: getattr(value, "name") if isinstance(value, Record) else value for key, value in options.items()}
 
 
 def named_options(options: Mapping[str, Any]) -> dict[str, Any]:
-    """Options where files of robots and objects, and a Robot or an Object, are the names of these."""
+    """Options with each file of a robot or object, and each Robot or Object, replaced by its name."""
     return {key: next((named(kind, value) for kind in ("robot", "object") if is_file(kind, value)), value)
             for key, value in by_name(options).items()}

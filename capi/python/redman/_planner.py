@@ -1,4 +1,4 @@
-"""Planner: actions that are found by trying them out in copies of a world. Experimental, as redman/plan.h is."""
+"""Planner: finds actions by trying them out in copies of a world. Experimental, like redman/plan.h."""
 from __future__ import annotations
 
 import contextlib
@@ -26,9 +26,9 @@ Stop = Callable[[int], Any]
 
 
 class PlanInfo(_abi.PlanInfo):
-    """What Planner.act found. ret and cost: of the best plan, the discounted sum of rewards and the sum of each cost; costs: the
-    same by name. feasible_share: of the plans that were tried, how many are within the limits. planned: False where the plan of
-    before was followed. cut: whether stop ended it early, after so many iterations. steps: control steps of all copies."""
+    """What Planner.act found. ret and cost: discounted sum of rewards and sum of each cost of the best plan; costs: the same
+    by name. feasible_share: share of the plans tried that are within the limits. planned: False where the previous plan was
+    followed. cut: whether stop ended it early, after the given iterations. steps: control steps of all copies."""
 
     planned: bool
     cut: bool
@@ -41,8 +41,9 @@ class PlanInfo(_abi.PlanInfo):
 
 
 class Planner(Hinted):
-    """Finds the next action of one world: rolls many copies of it out, each under a noisy plan, and moves the plan to what went
-    best. Of plans within the cost limits the one with the highest return is best, then those that cost least.
+    """Finds the next action of one world: simulates many copies of it, each with a noisy variation of a plan, and moves the
+    plan towards what went best. Among plans within the cost limits the one with the highest return is best; all others rank
+    behind them, by their cost.
 
         pool = redman.Pool("ball_run")
         pool.reset()
@@ -53,12 +54,13 @@ class Planner(Hinted):
 
     One planner follows one world's episode: call reset() when another begins. options: redman.planner_options() has them with
     their help. noise: standard deviation of each entry of an action, [action_dim] or a number; None: option noise.
-    cost_limits: on the sum of each cost over an episode, as Agent's; None: the task's on column 0. policy: it proposes, and the
-    noise is about what it would do; a Policy, its file or run folder, or "trained". agent: its critic values where a rollout
-    ends. threads: of the rollouts; 0: as many as the pool has. stop(steps), of the control steps that copies have taken so far,
-    is asked before each of their steps: a true answer ends the call with the best plan so far.
+    cost_limits: on the sum of each cost over an episode, as Agent's; None: the task's on column 0. policy: proposes plans,
+    and the noise is added to them; a Policy, its file or run folder, or "trained". agent: its critic values the states where
+    a rollout ends. threads: of the rollouts; 0: as many as the pool has. stop(steps) is called before each step of the
+    copies with their number of control steps so far: a true result ends the call with the best plan so far.
 
-    The model is the world itself, so copies know the draws that it will make. Same seed and calls: the same bytes.
+    The model is the world itself, so copies know even the random numbers that it will draw. The same seed and calls give the
+    same bytes.
     """
 
     _hints = {
@@ -113,8 +115,8 @@ class Planner(Hinted):
         self._found = sized(_abi.rdm_plan_info)
 
     def act(self, env: int = 0, pool: Optional[Pool] = None) -> FloatArray:
-        """[action_dim] the best action for one world as it is now; of another pool of the same task and options where one is
-        given. StateError where no episode runs."""
+        """[action_dim] the best action for one world in its present state, in another pool of the same task and options if
+        one is given. StateError where no episode runs."""
         where = self.pool if pool is None else pool
         action = np.empty(self.spec.action_dim, np.float32)
         with where._lock, self._lock, contextlib.nullcontext() if self._agent is None else self._agent._lock:
@@ -134,7 +136,8 @@ class Planner(Hinted):
 
     @property
     def plan(self) -> FloatArray:
-        """[horizon][action_dim] the plan; row 0 is the action that act gave. Assignment: the next act begins there."""
+        """[horizon][action_dim] the plan; row 0 is the action that act returned. The next act begins at a plan that is
+        assigned."""
         out = np.empty((self.horizon, self.spec.action_dim), np.float32)
         with self._lock:
             check(lib.rdm_planner_get_plan(self._handle.value, out.ctypes.data))

@@ -121,10 +121,11 @@ class Policy(Hinted):
         write_whole(path, self._bytes, "policy")
 
     def export(self, path: Union[str, os.PathLike[str]], *, name: Optional[str] = None, int8: bool = False) -> None:
-        """Writes the policy for other programs, by the ending of the path: .onnx (normaliser, network and clip in one graph), .c
-        (a C99 function that needs no heap and no library), .safetensors, .rdm (as save). The command `redman export` makes them.
+        """Writes the policy for other programs, in the format of the path's ending: .onnx (normaliser, network and clipping
+        in one graph), .c (a C99 function that needs no heap and no library), .safetensors, .rdm (as save). Uses the command
+        `redman export`.
 
-        name: begins the names in the C file, None: the task. int8: its weights in 8 bits.
+        name: prefix of the names in the C file; None: the task's name. int8: stores its weights in 8 bits.
         """
         export(self, path, name, int8)
 
@@ -166,8 +167,8 @@ class Policy(Hinted):
     __call__ = act
 
     def sample(self, obs: Any, noise: Any = None) -> tuple[FloatArray, FloatArray]:
-        """(action, mean), both [n][action_dim] for rows [n][obs_dim], not clipped, as an agent samples: mean + std noise, with
-        standard normals noise [n][action_dim], None: those of numpy's global generator. What agent.put takes."""
+        """(action, mean), both [n][action_dim] for rows [n][obs_dim], not clipped, as an agent samples: mean + std noise,
+        with standard normal noise [n][action_dim]; None: from numpy's global generator. Agent.put takes such actions."""
         rows_of = _abi.FUNCTIONS["rdm_policy_sample"].rows
         observed = np.atleast_2d(np.asarray(obs))
         if observed.ndim != 2 or observed.shape[1] != self.info.obs_dim:

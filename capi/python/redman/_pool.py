@@ -73,16 +73,16 @@ def memory(task: _discovery.TaskName, num_envs: int = 1, options: Optional[Optio
 
 
 def spec(task: _discovery.TaskName, options: Optional[Options] = None) -> _abi.Spec:
-    """The sizes that a pool of these options would have; makes the task to ask it, and no world."""
+    """The sizes that a pool with these options would have; makes the task for a moment and no world."""
     config = _struct({"task": _discovery.task_name(task), "num_envs": 1, "seed": 0, "threads": 0, "autoreset": "same_step",
                       "options": dict(options or {})})
     return _abi.Spec(filled(_abi.rdm_spec, lib.rdm_pool_config_spec, byref(config)))
 
 
 def check_task(task: _discovery.TaskName, options: Optional[Options] = None) -> None:
-    """Tries what a task promises: the same bytes for the same seed, any threads and after a saved state, rows within their fields
-    and bounds, costs of 0 or more. ArgumentError names the function, the step and the entry where a promise broke first. Takes
-    seconds; for a .task file and for tasks of your own."""
+    """Tests what a task must promise: the same bytes for the same seed, for any number of threads and after a saved state,
+    rows within their fields and bounds, costs of 0 or more. ArgumentError names function, step and entry of the first broken
+    promise. Takes seconds; for .task files and tasks of your own."""
     name = _discovery.task_name(task)
     settings = settings_of(named_options(dict(options or {})), _kinds(name) if options else {})
     check(lib.rdm_task_check(encoded(name), settings, _abi.rdm_stop(0), None, None, 0))
@@ -150,9 +150,10 @@ class Pool(Hinted):
     Rows (obs, action, reward, cost, ...) are views of memory that reset and step overwrite: copy what you want to keep. They
     stay valid after the pool is closed. One thread at a time uses a pool; others wait. Options are a dict (`pool.options`
     has all); the files of a robot (my.urdf) and an object (mug.object) stand for the names of those in them.
-    task: a name, redman.task(name), a .task file, or an id of Gymnasium's. threads: 0 or 1 the caller's only. autoreset: what a
-    step does with worlds that ended: "same_step" begins the next episode in it, "next_step" in the step that follows, "off"
-    leaves it to reset(mask=...). ranks: this pool has the worlds of one process of several (redman.Ranks).
+    task: a name, redman.task(name), a .task file, or an id of Gymnasium's. threads: 0 or 1: the caller's thread only.
+    autoreset: what a step does with worlds that ended: "same_step" begins the next episode in it, "next_step" in the step
+    that follows, "off" leaves it to reset(mask=...). ranks: this pool has the worlds of one process of several
+    (redman.Ranks).
     """
 
     _hints = {
@@ -390,9 +391,9 @@ class Pool(Hinted):
             self._begun = True
 
     def set_starts(self, recording: Optional[Recording], share: float) -> None:
-        """From the next reset on worlds begin an episode, with probability share (0 to 1), at a state of the recording, which
-        has some if it was made of a pool; None: the states of the last call with another share. Such an episode has the steps
-        that are left. All other draws are what they are without."""
+        """From the next reset on, worlds begin an episode with probability share (0 to 1) at a state of the recording, which
+        has states if it was made from a pool; None: keeps the states of the last call, with another share. Such an episode
+        has only the steps that were left of the recorded one. All other random numbers are the same as without."""
         if recording is not None and not hasattr(recording, "_handle"):
             raise UsageError(f"recording: a redman.Recording or None, not {recording!r}")
         with self._lock:
@@ -410,7 +411,7 @@ class Pool(Hinted):
 
     @property
     def cameras(self) -> dict[str, _discovery.Camera]:
-        """All cameras that this pool can look by: the task's, those that ride on its robots, those of clouds."""
+        """All cameras of this pool: the task's, those on its robots, and those for clouds."""
         return dict(self._cameras)
 
     @cached_property
@@ -553,7 +554,7 @@ class Pool(Hinted):
         return Sensors(self._handle, self.num_envs)
 
     def world_error(self, env: int) -> str:
-        """What failed last in one world of a task of your own: "world 3: task press: judge: sensor lost"; "" at first."""
+        """The last failure in one world of a task of your own: "world 3: task press: judge: sensor lost"; "" at first."""
         return text(lib.rdm_pool_world_error(self._open(), int32(env, "env")))
 
     @property
@@ -597,7 +598,7 @@ class Pool(Hinted):
 
     @property
     def single_observation_space(self) -> Any:
-        """The Box of one observation, with the bounds that its entries keep; of Gymnasium where that was imported."""
+        """The Box of one observation, with the bounds of its entries; Gymnasium's class if that was imported."""
         low, high = self.bounds
         return box(low, high)
 
@@ -608,7 +609,7 @@ class Pool(Hinted):
 
     @property
     def observation_space(self) -> Any:
-        """The Box of obs [num_envs][obs_dim], as a vector environment of Gymnasium has it."""
+        """The Box of obs [num_envs][obs_dim], as in a vector environment of Gymnasium."""
         one = self.single_observation_space
         return box(*(np.tile(end, (self.num_envs, 1)) for end in (one.low, one.high)))
 

@@ -1,4 +1,4 @@
-"""Ranks: one learner of several processes. Experimental, as redman/ranks.h is."""
+"""Ranks: learning in several processes together. Experimental, like redman/ranks.h."""
 from __future__ import annotations
 
 import ctypes
@@ -14,8 +14,8 @@ Swap = Callable[[int, bytes], bytes]
 
 
 class Ranks:
-    """Which of several processes this one is, and how they exchange messages. Together they are one learner, whose bytes are
-    those of one process with all worlds and the same option blocks.
+    """Which of several processes this one is, and how they exchange messages. Together they are one learner, which learns
+    the same bytes as one process with all worlds and the same option blocks.
 
         ranks = redman.Ranks(comm.rank, comm.size, comm.allgather)          # comm: of mpi4py
         pool = redman.Pool(task, 16, ranks=ranks)                           # 16 of 16 * comm.size worlds
@@ -24,9 +24,10 @@ class Ranks:
         while True:
             epoch = agent.rollout(pool)                                     # the same on each rank
 
-    gather(message) gives the messages of all ranks, in their order; messages are equally long bytes, and it blocks until all have
-    come. swap(partner, message), which may be left out, sends a message to one rank and gives that rank's. What one of them
-    raises ends the call with CancelledError. All ranks make the same calls of rollout, act, record, update and save.
+    gather(message) returns the messages of all ranks, in order; messages are bytes of equal length, and it blocks until all
+    ranks have called it. swap(partner, message), which is optional, sends a message to one rank and returns that rank's. An
+    exception in either ends the call with CancelledError. All ranks must make the same calls of rollout, act, record, update
+    and save.
     """
 
     def __init__(self, rank: int, ranks: int, gather: Optional[Gather] = None, swap: Optional[Swap] = None) -> None:

@@ -13,7 +13,7 @@ def _plain(value: Any) -> Any:
 
 
 class Members(enum.EnumMeta):
-    """Of an enum help and completion tell its members alone, and nothing of what every int can do."""
+    """Makes help and completion of an enum show only its members, not the methods of int."""
 
     def __dir__(cls) -> list[str]:
         return ["__doc__", "__module__", *cls.__members__]

@@ -1,4 +1,4 @@
-"""Recording: rows of what was seen, done and meant, as data. Experimental, as redman/record.h is."""
+"""Recording: observations, executed actions and labels as data. Experimental, like redman/record.h."""
 from __future__ import annotations
 
 import contextlib
@@ -41,9 +41,9 @@ class Recording(Hinted):
         recording = redman.Recording(obs_dim=3, action_dim=1)
         recording.append(obs=obs, action=action, reward=reward, truncated=ends)
 
-    agent.clone(recording) fits an agent to it, agent.recording = recording holds one near it, pool.set_starts(recording) begins
-    episodes at its states, of which every state_stride-th row of an episode keeps one. Its arrays (obs, action, reward, ...)
-    are copies: ask once, not in a loop.
+    agent.clone(recording) fits an agent to it, agent.recording = recording keeps an agent near it while it learns,
+    pool.set_starts(recording) begins episodes at its states, which are kept at every state_stride-th row of an episode. Its
+    arrays (obs, action, reward, ...) are copies: read them once, not in a loop.
     """
 
     _hints = {
@@ -83,7 +83,7 @@ class Recording(Hinted):
 
     @classmethod
     def load(cls, path: Union[str, os.PathLike[str]]) -> Recording:
-        """Of an .npz file that save, numpy.savez or `redman rollout --record` wrote."""
+        """Reads an .npz file that save, numpy.savez or `redman rollout --record` wrote."""
         must_exist(path, "recording")
         out = cls.__new__(cls)
         out._stride = 8
@@ -91,7 +91,7 @@ class Recording(Hinted):
         return out
 
     def save(self, path: Union[str, os.PathLike[str]]) -> None:
-        """Writes an .npz file, whole or not at all."""
+        """Writes an .npz file, entirely or not at all."""
         with self._lock:
             check(lib.rdm_recording_write_file(self._handle.value, encoded(path)))
 
@@ -99,10 +99,12 @@ class Recording(Hinted):
 
     @contextlib.contextmanager
     def step(self, pool: Pool, label: Any = None, mask: Any = None) -> Iterator[None]:
-        """Around pool.step: what the worlds see and do before it, and what came of it, as one row of each.
+        """For use around pool.step: records observation and action of each world before it, and its outcome after it, as one
+        row.
 
-        label [num_envs][action_dim]: what a teacher meant, None: the action. mask [num_envs]: of which worlds. Several steps
-        within make one row, of sums. A world that a pool with next_step autoreset is about to reset gets none.
+        label [num_envs][action_dim]: the actions that a teacher meant; None: the actions. mask [num_envs]: the worlds to
+        record. Several steps inside make one row, with sums. A world that a pool with next_step autoreset is about to reset
+        gets no row.
         """
         self.begin_step(pool, label, mask)
         yield
@@ -117,7 +119,7 @@ class Recording(Hinted):
             check(lib.rdm_recording_begin_step(self._handle.value, pool._open(), address(meant), address(chosen)))
 
     def end_step(self, pool: Pool, mask: Any = None) -> None:
-        """The second half of step: behind pool.step."""
+        """The second half of step: after pool.step."""
         chosen = pool._mask(mask)
         with pool._lock, self._lock:
             check(lib.rdm_recording_end_step(self._handle.value, pool._open(), address(chosen)))
@@ -126,7 +128,7 @@ class Recording(Hinted):
                reward: Any = None, cost: Any = None, terminated: Any = None, truncated: Any = None, success: Any = None,
                episode: Any = None, points: Any = None, point_class: Any = None, point_color: Any = None,
                state_row: Any = None, state: Any = None) -> None:
-        """Adds all of another recording, or rows of arrays: obs [n][obs_dim] and action [n][action_dim] at least.
+        """Adds all rows of another recording, or rows from arrays: at least obs [n][obs_dim] and action [n][action_dim].
 
         label None: as action; reward, cost None: 0. episode [n] numbers the episodes from 0; None: each end begins one.
         points [n][num_points][3] are whole mm. state [m][state_bytes] are those before the rows state_row [m].
@@ -155,8 +157,9 @@ class Recording(Hinted):
         del kept
 
     def filter(self, success: bool = False, max_cost: CostLimits = None) -> int:
-        """Drops whole episodes, and returns how many: with success those without one; those whose sum of a cost is above its
-        max_cost, a number for column 0 or one for each column, None: any. Episodes that still run are closed."""
+        """Drops whole episodes, and returns how many: with success=True those without a success, and those whose sum of a
+        cost is above its max_cost, a number for column 0 or one for each column; None: not checked. Episodes that still run
+        are closed."""
         limits = each_cost(max_cost, None, [f"cost {k}" for k in range(self.cost_dim)], "max_cost")
         rows = None if limits is None else np.array(limits, np.float64)
         dropped = c_int64()
@@ -165,7 +168,7 @@ class Recording(Hinted):
         return dropped.value
 
     def clear(self) -> None:
-        """No rows; the memory stays."""
+        """Removes all rows; the memory stays."""
         with self._lock:
             check(lib.rdm_recording_clear(self._handle.value))
 
@@ -173,7 +176,7 @@ class Recording(Hinted):
 
     @property
     def info(self) -> _abi.RecordingInfo:
-        """Sizes, rows, episodes, states, and what names them."""
+        """Sizes, numbers of rows, episodes and states, and the task."""
         return _abi.RecordingInfo(filled(_abi.rdm_recording_info, lib.rdm_recording_get_info, self._handle.value))
 
     def arrays(self) -> dict[str, Array]:
@@ -209,12 +212,12 @@ class Recording(Hinted):
 
     @property
     def action(self) -> FloatArray:
-        """[rows][action_dim] that was done, in [-1, 1]."""
+        """[rows][action_dim] executed action, in [-1, 1]."""
         return self._row("action")
 
     @property
     def label(self) -> FloatArray:
-        """[rows][action_dim] that the teacher meant."""
+        """[rows][action_dim] the action that the teacher meant."""
         return self._row("label")
 
     @property
@@ -234,7 +237,7 @@ class Recording(Hinted):
 
     @property
     def truncated(self) -> npt.NDArray[np.bool_]:
-        """[rows] the episode was cut with this row."""
+        """[rows] the episode was truncated with this row."""
         return self._row("truncated")
 
     @property

@@ -1,4 +1,4 @@
-"""Robot: a description of a hand, an arm or another tree of links; those of the library, of files, and of your own."""
+"""Robot: a description of a hand, an arm or another tree of links; robots of the library, from files, and of your own."""
 from __future__ import annotations
 
 import ctypes
@@ -23,8 +23,8 @@ RobotName = Union[str, "os.PathLike[str]", "Robot"]
 
 
 class Note(ImportNote):
-    """Of a file that was read: what is not in the robot (NoteKind.DROPPED), is in another form (CHANGED), was guessed (GUESSED)
-    or found by a trial (CHECK); line counts from 1, 0: of none."""
+    """A note about a file that was read: what is not in the robot (NoteKind.DROPPED), is in another form (CHANGED), was
+    guessed (GUESSED) or found by a trial (CHECK); line counts from 1, 0: no line."""
 
     kind: NoteKind
 
@@ -34,7 +34,7 @@ class Note(ImportNote):
 
 
 class Poses(NamedTuple):
-    """Frames of a robot in its root frame, position (m) and quaternion (x, y, z, w); None: it has none of these."""
+    """Frames of a robot in its root frame, position (m) and quaternion (x, y, z, w); None where it has no such frame."""
 
     links: DoubleArray  # [num_joints][7] of each link, which joint i moves
     flange: Optional[DoubleArray]  # [7] of an arm
@@ -74,7 +74,8 @@ class Robot(_abi.Robot):
                 {"name": "leaf", "joint": "hinge", "parent": "root", "kind": "revolute", "axis": [0, 0, 1], "lower": 0,
                  "upper": 1.6, "kp": 1, "kd": 0.1, "effort": 5, "mass": 8, "moment": [0.5, 0.5, 0.9, 0, 0, 0]}])
 
-        A text in the place of a row is the name of a link. ArgumentError names the row and the member that is wrong.
+        Where a row of links is expected, a text is the name of the link. ArgumentError names the row and the member that is
+        wrong.
         """
         struct = sized(_abi.rdm_robot_def)
         check(lib.rdm_robot_def_init(byref(struct), ctypes.sizeof(struct)))
@@ -85,7 +86,7 @@ class Robot(_abi.Robot):
 
     @property
     def definition(self) -> dict[str, Any]:
-        """All that it was made from, as create takes it: rdm_robot_def as a dict. Rows of links are numbers."""
+        """What the robot was made from, in the form that create takes: rdm_robot_def as a dict. Rows of links are numbers."""
         struct = filled(_abi.rdm_robot_def, lib.rdm_robot_get_def, self.number)
         out = plain(struct)
         for name, call, kind in (("links", lib.rdm_robot_link_at, _abi.rdm_robot_link),
@@ -111,7 +112,7 @@ class Robot(_abi.Robot):
         return np.array(self.definition["home"])
 
     def poses(self, q: Any = None) -> Poses:
-        """Where its frames are with the joints at q [num_joints], rad (m); None: at home."""
+        """The robot's frames with its joints at q [num_joints], rad (m); None: at home."""
         struct = filled(_abi.rdm_robot_def, lib.rdm_robot_get_def, self.number)
         joints = self._given("rdm_robot_get_poses", self.home if q is None else q)
         links, tips = np.empty((self.num_joints, 7)), np.empty((struct.num_fingers, 3))
@@ -123,16 +124,16 @@ class Robot(_abi.Robot):
         return Poses(links, flange, tips, palm)
 
     def reach(self, flange: Any, q: Any = None) -> Optional[DoubleArray]:
-        """[num_joints] joints that bring the flange of an arm to a pose in its root frame, sought from q (None: home); None where
-        the search ends elsewhere. UnsupportedError: no flange."""
+        """[num_joints] joint positions that bring the flange of an arm to a pose in its root frame, searched from q (None:
+        home); None where the search ends elsewhere. UnsupportedError for a robot without a flange."""
         joints = self._given("rdm_robot_reach", self.home if q is None else q).copy()
         wanted, found = np.array([*(pose := pose_of(flange, "flange")).p, *pose.q]), c_int32()
         check(lib.rdm_robot_reach(self.number, wanted.ctypes.data, joints.ctypes.data, byref(found)))
         return joints if found.value else None
 
     def mounted(self, hand: RobotName, name: str, *, yaw: float = 0.0, adapter: float = 0.0, left: bool = False) -> Robot:
-        """This arm with a hand on its flange, as a robot of its own: the hand is turned by yaw (rad) about the flange's z and
-        stands off by adapter (m); left: its mirror image."""
+        """This arm with a hand on its flange, as a robot of its own: the hand is rotated by yaw (rad) about the flange's z
+        and moved out by adapter (m); left: its mirror image."""
         out = c_int32()
         check(lib.rdm_robot_create_mounted(byref(out), encoded(name), self.number, robot(hand).number, yaw, adapter, int(left)))
         added.add(out.value)
@@ -140,7 +141,7 @@ class Robot(_abi.Robot):
 
     @property
     def notes(self) -> tuple[Note, ...]:
-        """What was dropped, changed and guessed as its file was read; empty of others."""
+        """What was dropped, changed and guessed when its file was read; empty for other robots."""
         return _notes.get(self.number, ())
 
     def save(self, path: Union[str, os.PathLike[str]]) -> None:
@@ -149,7 +150,7 @@ class Robot(_abi.Robot):
         write_whole(path, robot_text(self.number), "robot")
 
     def remove(self) -> None:
-        """Takes a robot of your own, or of a file, out of this process; pools that have it keep it."""
+        """Removes a robot of your own, or of a file, from this process; pools that have it keep it."""
         check(lib.rdm_robot_destroy(self.number))
 
     def _given(self, function: str, q: Any) -> DoubleArray:
@@ -182,7 +183,7 @@ def robots() -> dict[str, Robot]:
 
 
 def robot(name: RobotName) -> Robot:
-    """One robot by its name or alias, or of a file, as load_robot reads it. NotFoundError offers the nearest name."""
+    """One robot by its name or alias, or from a file, as load_robot reads it. NotFoundError offers the nearest name."""
     if isinstance(name, Robot):
         return name
     if not isinstance(name, (str, os.PathLike)):

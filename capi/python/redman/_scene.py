@@ -1,4 +1,4 @@
-"""SceneBuilder: what a world of a task of your own is made of."""
+"""SceneBuilder: builds the scene of a task of your own."""
 from __future__ import annotations
 
 import ctypes
@@ -18,7 +18,7 @@ _PARTS = {part.name.lower(): int(part) for part in ScenePart}
 
 
 class SceneBuilder:
-    """What Task.scene adds robots, bodies and shapes to; each call returns the number by which Worlds knows the part.
+    """Task.scene adds robots, bodies and shapes to it; each call returns the number that identifies the part in Worlds.
 
         def scene(self, s):
             self.hand = s.robot("shadow_hand", "hand", pose=[0, 0, 0.1])
@@ -27,8 +27,8 @@ class SceneBuilder:
             self.touch = s.touch("hand", "ball")
             self.tip = s.find("link", "hand_ff_distal")
 
-    Poses are [x, y, z], m, or [x, y, z, qx, qy, qz, qw]. A name that is wrong is an error that offers the nearest one. All is
-    added before the first find, touch or joint.
+    Poses are [x, y, z], m, or [x, y, z, qx, qy, qz, qw]. The error for a wrong name offers the nearest one. Everything must
+    be added before the first find, touch or joint.
     """
 
     def __init__(self, handle: int, options: Mapping[str, Any]) -> None:
@@ -55,7 +55,7 @@ class SceneBuilder:
         return out
 
     def sphere(self, name: str, radius: float, mass: float, pose: Any = (0, 0, 0), **more: Any) -> int:
-        """A free ball; radius, m, mass, kg. More: what body and its shapes take, as material, color, angular_damping."""
+        """A free ball; radius, m, mass, kg. Further keywords of body and its shapes: material, color, angular_damping, ..."""
         return self._one(name, "sphere", [radius], mass, pose, more)
 
     def box(self, name: str, size: Any, mass: float, pose: Any = (0, 0, 0), **more: Any) -> int:
@@ -71,7 +71,7 @@ class SceneBuilder:
         return self._one(name, "cylinder", [radius, half_length], mass, pose, more)
 
     def object(self, object_name: str, name: Optional[str] = None, pose: Any = (0, 0, 0), scale: float = 1.0) -> int:
-        """One of redman.objects(), or the file of one, as a free body; name: what it is called here."""
+        """One of redman.objects(), or the file of one, as a free body; name: its name in this scene."""
         from ._object import objects
         from ._paths import named
         out, at, called = c_int32(), pose_of(pose), named("object", object_name)
@@ -82,7 +82,7 @@ class SceneBuilder:
     # --- what stands still, robots
 
     def static(self, kind: str, size: Any = (), name: Optional[str] = None, pose: Any = (0, 0, 0), **more: Any) -> None:
-        """A shape that stands still: kind "box", "sphere", "plane", ..., size, m, as of a free one."""
+        """A fixed shape: kind "box", "sphere", "plane", ..., size, m, as for a free one."""
         row = _abi.rdm_shape_def()
         kept = fill(row, {"kind": kind, "size": size, "pose": pose, **({"name": name} if name else {}), **more}, f"static {kind}")
         check(lib.rdm_scene_add_static(self._scene(), byref(row)))
@@ -93,8 +93,8 @@ class SceneBuilder:
         self.static("plane", (), name, pose, **more)
 
     def robot(self, robot: Union[RobotName, Mapping[str, Any]], name: str, pose: Any = (0, 0, 0), **more: Any) -> int:
-        """A robot of redman.robots(), of a file, or redman.Robot.create; or a dict of what create takes, for this scene alone, as
-        a button is. name begins the names of its links, joints and shapes. More: material, base_damping, free_base, left,
+        """A robot of redman.robots(), from a file, or of redman.Robot.create; or a dict of what create takes, for this scene alone
+        (a button). name is the prefix of the names of its links, joints and shapes. More: material, base_damping, free_base, left,
         gravity."""
         from ._robot import robot as robot_of
         row = sized(_abi.rdm_scene_robot)
@@ -115,39 +115,39 @@ class SceneBuilder:
     # --- materials
 
     def material(self, name: str, **friction: float) -> None:
-        """A new material; friction: its coefficients with materials that are there, material("rubber", default=0.9)."""
+        """A new material; friction: its coefficients with existing materials, as in material("rubber", default=0.9)."""
         check(lib.rdm_scene_add_material(self._scene(), encoded(name)))
         for other, mu in friction.items():
             self.friction(name, other, mu)
 
     def friction(self, a: str, b: str, mu: Optional[float]) -> None:
-        """The coefficient of friction between two materials, 1 unless set; None: they go through each other."""
+        """The coefficient of friction between two materials, 1 unless set; None: they pass through each other."""
         check(lib.rdm_scene_set_friction(self._scene(), encoded(a), encoded(b), -1.0 if mu is None else mu))
 
     def contact_law(self, a: str, b: str, **law: float) -> None:
-        """How two materials meet beside their friction: restitution, torsional, rolling, time_constant, damping_ratio, impedance_min,
-        impedance_max, impedance_width, pyramid."""
+        """Contacts of two materials, apart from their friction: restitution, torsional, rolling, time_constant,
+        damping_ratio, impedance_min, impedance_max, impedance_width, pyramid."""
         row = sized(_abi.rdm_contact_law)
         check(lib.rdm_contact_law_init(byref(row), ctypes.sizeof(row)))
         fill(row, law, "contact_law")
         check(lib.rdm_scene_set_contact_law(self._scene(), encoded(a), encoded(b), byref(row)))
 
     def gravity(self, g: Sequence[float]) -> None:
-        """Gravity [3], m/s2, in the place of the option's."""
+        """Gravity [3], m/s2, instead of the option's."""
         check(lib.rdm_scene_set_gravity(self._scene(), (c_double * 3)(*g)))
 
     def adjustable(self) -> None:
-        """Worlds take Worlds.set_factors: masses, gains, friction of their own."""
+        """Allows Worlds.set_factors: masses, gains and friction of each world's own."""
         check(lib.rdm_scene_set_adjustable(self._scene()))
 
     def feedforward(self) -> None:
-        """Worlds take Worlds.set_feedforward: efforts added to the springs of the drives."""
+        """Allows Worlds.set_feedforward: efforts that are added to those of the drives."""
         check(lib.rdm_scene_set_feedforward(self._scene()))
 
     # --- numbers that follow from options
 
     def field(self, name: str, count: int) -> None:
-        """Another count of entries for a field of the observation in this pool."""
+        """Sets another count of entries for a field of the observation in this pool."""
         check(lib.rdm_scene_set_field(self._scene(), encoded(name), count))
 
     # --- what is there
@@ -161,8 +161,8 @@ class SceneBuilder:
         return out.value
 
     def touch(self, a: str, b: str) -> int:
-        """A number for Worlds.touch: all contacts of shapes of a with those of b, each the name of a shape, body or robot, or a
-        pattern of such names with * and ?."""
+        """Returns a number for Worlds.touching and touch_force: all contacts of shapes of a with those of b; each is the
+        name of a shape, body or robot, or a pattern of such names with * and ?."""
         out = c_int32()
         check(lib.rdm_scene_add_touch(self._scene(), encoded(a), encoded(b), byref(out)))
         return out.value

@@ -1,5 +1,5 @@
-"""What an agent takes over without acting: recordings, policies, labels of points; and what its critics say. Experimental, as
-redman/record.h, sense.h and plan.h are."""
+"""What an agent can learn without acting: from recordings, policies and labels of points; and the values of its critics.
+Experimental, like redman/record.h, sense.h and plan.h."""
 from __future__ import annotations
 
 import ctypes
@@ -17,9 +17,9 @@ from ._rows import DoubleArray, FloatArray, clouds, given
 
 
 class CloneReport(_abi.CloneReport):
-    """What Agent.clone did. epochs: that were run; best_epoch: from 1, whose weights were kept; stopped: whether it ended early;
-    train_rows, validation_rows: counts; train_loss, validation_loss: of the best epoch, mean squared error of an entry, nan
-    without validation; train_losses, validation_losses: [epochs] the same of each epoch."""
+    """What Agent.clone did. epochs: number of epochs run; best_epoch: the epoch, from 1, whose weights were kept; stopped:
+    whether it ended early; train_rows, validation_rows: counts; train_loss, validation_loss: mean squared error of an entry
+    in the best epoch, nan without validation; train_losses, validation_losses: [epochs] the same for each epoch."""
 
     stopped: bool
     train_losses: tuple[float, ...]
@@ -35,7 +35,7 @@ class CloneReport(_abi.CloneReport):
 
 
 class Taught:
-    """The part of an Agent that is here."""
+    """The methods of Agent that are in this module."""
 
     _a: Optional[int]
     _lock: Any
@@ -53,10 +53,10 @@ class Taught:
               seed: int = 0, feed_normalizer: bool = True) -> CloneReport:
         """Behaviour cloning: fits the actor's mean to the labels of a recording; critics and multipliers stay.
 
-        epochs: passes over the rows, at most; patience: epochs without a better validation loss that end it, 0: never; the
-        learning rate falls in a line to learning_rate_end; validation: the share of rows, in whole episodes, that are not learned
-        from; action_std: the deviation of actions afterwards, 0: as it is; feed_normalizer: the statistics of observations
-        become the recording's first. Ctrl-C and cancel leave the agent as it was.
+        epochs: passes over the rows, at most; patience: ends after this many epochs without a better validation loss, 0:
+        never; the learning rate falls linearly to learning_rate_end; validation: the share of rows, in whole episodes, held
+        back for validation; action_std: the standard deviation of actions afterwards, 0: unchanged; feed_normalizer: first
+        sets the statistics of observations to the recording's. Ctrl-C and cancel leave the agent as it was.
         """
         _is_recording(recording)
         how = sized(_abi.rdm_clone_config)
@@ -74,8 +74,8 @@ class Taught:
 
     @property
     def recording(self) -> Optional[Recording]:
-        """The rows that options imitation and imitation_decay hold the actor near, None: none. Assignment copies obs and label;
-        a state that was saved with some loads only beside the same ones."""
+        """The rows that options imitation and imitation_decay keep the actor near, or None. Assignment copies obs and label;
+        a state that was saved with rows can be loaded only with the same rows set."""
         return self._recording
 
     @recording.setter
@@ -87,17 +87,17 @@ class Taught:
             self._recording = recording
 
     def warm_start(self, policy: Backup, samples: float = 1e6) -> None:
-        """The actor, its deviation and the statistics of observations become those of a policy: a Policy, its file or run
-        folder, or "trained". The statistics count for so many observations, 2 to 1e12. ArgumentError where networks differ:
-        the text says in what, and nothing changes."""
+        """Copies the actor, its standard deviation and the statistics of observations from a policy: a Policy, its file or
+        run folder, or "trained". The statistics count as `samples` observations, 2 to 1e12. ArgumentError where networks
+        differ: the text says in what, and nothing changes."""
         taken = policy_of(policy, self._config["task"])
         with self._lock:
             self._check(lib.rdm_agent_set_policy(self._a, taken._open(), float(samples)))
 
     def values(self, obs: Any) -> tuple[FloatArray, FloatArray]:
-        """What the critics say of observations [n][obs_dim], or of one [obs_dim]: the discounted sum of rewards to come [n], and
-        that of each cost [n][cost_dim], 0 for a cost that the agent does not limit. UnsupportedError with options
-        normalize_reward or normalize_cost, which leave critics no unit."""
+        """The critics' predictions for observations [n][obs_dim], or for one [obs_dim]: the discounted sum of future rewards
+        [n], and that of each cost [n][cost_dim], 0 for a cost that the agent does not limit. UnsupportedError with options
+        normalize_reward or normalize_cost, under which critics have no unit."""
         seen = np.asarray(obs)
         if seen.ndim not in (1, 2) or seen.shape[-1] != self.obs_dim:
             raise ArgumentError(f"obs: shape {seen.shape} does not fit (rows, {self.obs_dim})")
@@ -114,7 +114,7 @@ class Taught:
     def pretrain(self, points: Any, label: Any, num_labels: int, *, point_class: Any = None, point_color: Any = None,
                  epochs: int = 20, batch_rows: int = 16, learning_rate: float = 1e-3, validation: float = 0.1,
                  seed: int = 0) -> _abi.PretrainReport:
-        """The encoder learns to tell the points of clouds [rows][num_points][3] apart by label [rows][num_points], each below
+        """Trains the encoder to classify the points of clouds [rows][num_points][3] by label [rows][num_points], each below
         num_labels; nothing else changes. epochs: passes over the clouds. StateError without option encoder."""
         rows = len(points)
         cloud, kept = clouds(points, point_class, point_color, rows)

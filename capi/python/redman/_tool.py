@@ -1,4 +1,4 @@
-"""The command-line tool, for what it alone can do; and the commands `redman` and `python -m redman`, which are it."""
+"""Runs the command-line tool, for what only the tool can do, and is the commands `redman` and `python -m redman`."""
 from __future__ import annotations
 
 import os
@@ -13,7 +13,7 @@ from ._library import lib
 
 
 def tool_path() -> Optional[str]:
-    """The tool: REDMAN_TOOL, beside this package or the library, or on PATH; None: there is none."""
+    """The path of the tool: REDMAN_TOOL, beside this package or the library, or on PATH; None if there is none."""
     return os.environ.get("REDMAN_TOOL") or _found()
 
 
@@ -47,7 +47,7 @@ def main() -> None:
 
 
 def run_tool(*arguments: str, why: str) -> None:
-    """Runs the tool; its words are those of the error."""
+    """Runs the tool; its message becomes the text of the error."""
     tool = tool_path()
     if tool is None:
         raise UnsupportedError(f"{why} is made by the command redman, which is not in this package, not on PATH, nor where REDMAN_TOOL says")

@@ -98,18 +98,19 @@ class Run(Hinted):
 
     @property
     def best(self) -> Policy:
-        """The policy that was kept: the best that stays within the limits, else the one that comes nearest."""
+        """The policy that was kept: the best within the limits, else the one nearest to them."""
         return self.policy
 
     @property
     def config(self) -> dict[str, Any]:
-        """What it was made with: task, algo, seed, the options of the task and of the learner, limits by the names of costs."""
+        """The settings of the run: task, algo, seed, the options of the task and of the learner, limits by the names of
+        costs."""
         limits = dict(zip(_discovery.task(self.task).costs, self.agent.cost_limits))
         return {"task": self.task, "algo": self.algo, "seed": self.seed, "options": dict(self.options),
                 "agent_options": self.agent.options, "cost_limits": limits}
 
     def plot(self) -> Curve:
-        """The curve, which draws itself as the last line of a cell of a notebook; run.curve.save("curve.svg") elsewhere."""
+        """The curve, which a notebook draws when it is the last line of a cell; elsewhere use run.curve.save("curve.svg")."""
         return self.curve
 
     def save(self, path: Union[str, os.PathLike[str]]) -> None:
@@ -424,8 +425,8 @@ def train(task: _discovery.TaskName, algo: str = "ppo_lag", steps: float = 1e6, 
 
     out: a run folder to write, which `redman eval`, `plot`, `report` and `train --resume` can read, with the curve for
     TensorBoard; Python itself does not resume a run. task may be a .task file, and options may have files of robots and
-    objects: their texts are kept there, so that the folder is whole. task_file: the .task file that a task was registered
-    from otherwise.
+    objects: their texts are kept in the folder, so that it is complete. task_file: the .task file of a task that was
+    registered in another way.
     """
     goal = _steps(steps)
     if task_file is None and is_file("task", task):

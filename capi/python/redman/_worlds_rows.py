@@ -1,4 +1,4 @@
-"""Worlds: what the functions of a task in Python see of a pool's worlds, and what they do to them."""
+"""Worlds: how the functions of a task in Python read a pool's worlds and act on them."""
 from __future__ import annotations
 
 import ctypes
@@ -28,10 +28,10 @@ _UNIT_Q = np.array([0.0, 0.0, 0.0, 1.0])
 
 
 class Worlds:
-    """n worlds within a call of a task's function. Each array has a row for each of them; it cannot be written, but kept.
+    """n worlds within a call of a task's function. Each array has a row for each of them; it is a copy, which cannot be written.
 
-    Places are in m, quaternions (x, y, z, w), velocities in m/s and rad/s, forces in N. Parts are the numbers that SceneBuilder
-    returned. In observe nothing can be set.
+    Positions are in m, quaternions (x, y, z, w), velocities in m/s and rad/s, forces in N. Parts are given by the numbers
+    that SceneBuilder returned. In observe nothing can be set.
     """
 
     def __init__(self, rows: Any, state: Any, array: Callable[..., Any]) -> None:
@@ -49,19 +49,19 @@ class Worlds:
 
     @property
     def state(self) -> Any:
-        """Rows of what the task keeps (Task.state), by name: w.state["goal"] is [n][count] and can be written."""
+        """The state that the task keeps (Task.state), by name: w.state["goal"] is [n][count] and can be written."""
         if self._states is None:
             raise ArgumentError("state: the task's class has none; state = {\"goal\": 3} gives it one")
         return self._states
 
     @property
     def number(self) -> Any:
-        """[n] which worlds of the pool they are; what happens must not depend on it."""
+        """[n] the numbers of the worlds in the pool; results must not depend on them."""
         return np.array([lib.rdm_world_number(self._world(i)) for i in range(self.n)], np.int32)
 
     @property
     def q(self) -> Any:
-        """[n][joints] coordinates of all joints of all robots, rad (m)."""
+        """[n][joints] positions of all joints of all robots, rad (m)."""
         return self._joints(Quantity.Q)
 
     @property
@@ -71,12 +71,12 @@ class Worlds:
 
     @property
     def target(self) -> Any:
-        """[n][joints] what their drives go for, rad (m)."""
+        """[n][joints] targets of their drives, rad (m)."""
         return self._joints(Quantity.TARGET)
 
     @property
     def torque(self) -> Any:
-        """[n][joints] of their drives, mean over the step, N m (N)."""
+        """[n][joints] torques of their drives, mean over the step, N m (N)."""
         return self._joints(Quantity.TORQUE)
 
     def joint(self, i: int) -> Any:
@@ -84,7 +84,7 @@ class Worlds:
         return self._get(Quantity.Q, i)[:, 0]
 
     def position(self, body: int) -> Any:
-        """[n][3] where the centre of mass of a body is."""
+        """[n][3] position of a body's centre of mass."""
         return self._get(Quantity.BODY, body)[:, 0:3]
 
     def rotation(self, body: int) -> Any:
@@ -92,7 +92,7 @@ class Worlds:
         return self._get(Quantity.BODY, body)[:, 3:7]
 
     def velocity(self, body: int) -> Any:
-        """[n][3] of a body's centre of mass."""
+        """[n][3] velocity of a body's centre of mass."""
         return self._get(Quantity.BODY, body)[:, 7:10]
 
     def spin(self, body: int) -> Any:
@@ -136,7 +136,7 @@ class Worlds:
         return list(rows)
 
     def overlap(self, body: int) -> Any:
-        """[n] by how much a body is within something that it may touch, m; 0: it is clear. Not in observe."""
+        """[n] how deep a body is inside something that it can touch, m; 0: it is free. Not in observe."""
         depth, out = ctypes.c_double(), np.empty(self.n)
         for i in range(self.n):
             check(lib.rdm_world_get_overlap(self._world(i), body, ctypes.byref(depth)))
@@ -144,7 +144,7 @@ class Worlds:
         return out
 
     def gravity_efforts(self, robot: int, joints: int) -> Any:
-        """[n][joints] efforts that hold a robot of so many joints against gravity where it is, N m (N)."""
+        """[n][joints] efforts that hold a robot of that many joints against gravity in its present pose, N m (N)."""
         out = np.empty((self.n, joints))
         for i in range(self.n):
             check(lib.rdm_world_get_gravity(self._world(i), robot, out[i].ctypes.data, joints))
@@ -153,7 +153,7 @@ class Worlds:
     # --- what is done to them
 
     def set_body(self, body: int, p: Any, q: Any = None, v: Any = 0.0, w: Any = 0.0) -> None:
-        """Places a body: p [n][3], q [n][4] (None: not turned), v [n][3], w [n][3]; a row alone is for all."""
+        """Places a body: p [n][3], q [n][4] (None: no rotation), v [n][3], w [n][3]; a single row is for all worlds."""
         self._set(Quantity.BODY, body, self._motions(p, q, v, w), 13)
 
     def set_base(self, robot: int, p: Any, q: Any = None, v: Any = 0.0, w: Any = 0.0) -> None:
@@ -167,19 +167,19 @@ class Worlds:
         self._set(Quantity.JOINT, robot, rows, 2)
 
     def set_targets(self, first: int, targets: Any) -> None:
-        """What the drives of the joints from `first` on go for: [n][count], rad (m)."""
+        """Sets the targets of the drives of the joints from `first` on: [n][count], rad (m)."""
         self._set(Quantity.TARGET, first, self._rows(targets), 1)
 
     def command(self, robot: int, commands: Any) -> None:
-        """All commands [n][count] of a robot, in [-1, 1]: they become targets within the ranges of its joints."""
+        """Sets all commands [n][count] of a robot, in [-1, 1]: they become targets within the ranges of its joints."""
         self._set(Quantity.COMMAND, robot, self._rows(commands), 1)
 
     def set_feedforward(self, first: int, efforts: Any) -> None:
-        """Efforts [n][count] added to the springs of the drives from joint `first` on, N m (N)."""
+        """Sets efforts [n][count] that are added to those of the drives from joint `first` on, N m (N)."""
         self._set(Quantity.FEEDFORWARD, first, self._rows(efforts), 1)
 
     def push(self, body: int, force: Any, torque: Any = 0.0) -> None:
-        """Force [n][3] at the centre of mass and torque [n][3] on a body in the next step, world axes."""
+        """Pushes a body in the next step: force [n][3] at the centre of mass and torque [n][3], world axes."""
         self._set(Quantity.BODY_PUSH, body, self._pair(force, torque), 6)
 
     def push_base(self, robot: int, force: Any, torque: Any = 0.0) -> None:
@@ -187,11 +187,11 @@ class Worlds:
         self._set(Quantity.BASE_PUSH, robot, self._pair(force, torque), 6)
 
     def push_link(self, link: int, force: Any, point: Any) -> None:
-        """Force [n][3] on a link at a point [n][3] of the world."""
+        """Pushes a link in the next step: force [n][3] at a point [n][3] of the world."""
         self._set(Quantity.LINK_PUSH, link, self._pair(force, point), 6)
 
     def set_factors(self, what: int, index: int, factor: Any, other: int = 0) -> None:
-        """A factor [n] on a constant of the scene, redman.Scale, in each world until its episode ends; needs
+        """Scales a constant of the scene, redman.Scale, by a factor [n] in each world until its episode ends; needs
         SceneBuilder.adjustable."""
         row = _abi.rdm_factor(what=int(what), index=index, other=other)
         for i, value in enumerate(np.broadcast_to(factor, (self.n,))):
@@ -199,24 +199,25 @@ class Worlds:
             check(lib.rdm_world_set_factors(self._world(i), ctypes.byref(row), 1))
 
     def fail(self, rows: Any) -> None:
-        """Ends the episodes of the rows [n] that are true, truncated and with Status.TASK; the others go on."""
+        """Ends the episodes of the rows [n] that are true, as truncated and with Status.TASK; the others continue."""
         results = self._array(self._results, self.n, np.int32)
         results[np.broadcast_to(rows, (self.n,)).astype(bool)] = int(ResultCode.STATE)
 
     # --- draws
 
     def uniform(self, low: Any, high: Any, count: Optional[int] = None) -> Any:
-        """[n], or [n][count], uniform in [low, high) from each world's own stream: the same for the same seed."""
+        """[n], or [n][count], random numbers, uniform in [low, high), from each world's own stream: the same for the same
+        seed."""
         return self._draw(lambda at: float(_uniform(at, low, high)), count)
 
     def normal(self, count: Optional[int] = None) -> Any:
-        """[n], or [n][count], of mean 0 and deviation 1."""
+        """[n], or [n][count], normal random numbers of mean 0 and standard deviation 1."""
         return self._draw(_normal, count)
 
     # ---
 
     def _keep_streams(self, states: int, offset: int, stride: int) -> None:
-        """After reset: a stream for the episode, in the state."""
+        """After reset: stores a stream for the episode in the state."""
         for i in range(self.n):
             check(_split((self._randoms or 0) + i * self._stride, states + i * stride + offset))
 
