@@ -69,11 +69,32 @@ in_title { in_title = !/\*\//; next }
 /^[ \t]*\/\*.*\*\/[ \t]*$/ { document($0); title_page(); next }
 /^$/ { kept = ""; print; next }
 /^#ifdef __cplusplus|^#if.*RDM_EXPERIMENTAL/ { kept = ""; if (section && depth == 0) { print "/** @} */"; section = 0 } print; next }
+in_brace {  # the rest of what stands behind a brace: about all of the struct or enum
+  line = $0
+  sub(/^[ \t]*\*? ?/, "", line)
+  sub(/ *\*\/ *$/, "", line)
+  brace_text = brace_text " " line
+  if (!/\*\//) next
+  print "/** " escaped(brace_text) " */"
+  print brace
+  kept = ""
+  depth = 1
+  in_brace = 0
+  next
+}
+/\{ *\/\*/ && !/\*\// {
+  match($0, /\/\*/)
+  brace = substr($0, 1, RSTART - 1)
+  brace_text = substr($0, RSTART + 3)
+  in_brace = 1
+  next
+}
 in_behind { in_behind = !/\*\//; print escaped($0); next }
 /[;,] *\/\*/ && !/\*\// {  # one that goes on in the next lines; only its own words are escaped
   in_behind = 1
   kept = ""
   match($0, /\/\*/)
+  if (statement && substr($0, 1, RSTART - 1) ~ /;/) statement = 0
   print substr($0, 1, RSTART - 1) "/**<" escaped(substr($0, RSTART + 2))
   next
 }

@@ -109,7 +109,7 @@ class Objects(Folder):
         pool = redman.Pool("grasp", options={"object": box})
         self.assertEqual(pool.options["object"], "my_box")
         redman.Object.check(**{**BOX, "name": "mug"})
-        with self.assertRaisesRegex(redman.ArgumentError, "taken"):
+        with self.assertRaisesRegex(redman.ArgumentError, "already used"):
             redman.Object.create(**BOX)
         with self.assertRaisesRegex(redman.UsageError, "nearest is mass"):
             redman.Object.check(**{**BOX, "mas": 1})
@@ -163,7 +163,7 @@ class Files(Folder):
         robot = self.removed(redman.load_robot(TRIPOD))
         robot.save(self.folder / "other.robot")
         text = (self.folder / "other.robot").read_bytes()
-        with self.assertRaisesRegex(redman.ArgumentError, "other.robot: .*taken"):
+        with self.assertRaisesRegex(redman.ArgumentError, "other.robot: .*already used"):
             redman.load(self.folder / "other.robot")
         again = self.removed(redman.load_robot(text, name="other"))
         self.assertEqual({**again.definition, "name": "tripod"}, robot.definition)

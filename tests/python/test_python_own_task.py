@@ -248,7 +248,7 @@ class OwnTask(unittest.TestCase):
 
     def test_mistakes_are_named(self):
         for fault, said in (("name", "'rihgt' is no cost of it.*right"), ("shape", r"field 'position' has shape \(2, 3\), not \(2, 2\)"),
-                            ("fields", "'mass', 'weight'"), ("sets", "observe changes nothing")):
+                            ("fields", "'mass', 'weight'"), ("sets", "it cannot be changed in observe")):
             Broken.fault = ""
             pool = redman.Pool(Broken, num_envs=2)
             pool.reset()

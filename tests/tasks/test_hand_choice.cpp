@@ -150,7 +150,7 @@ TEST_F(HandChoice, WhatCannotBeIsRefusedByName) {
   };
   refused({{"hand", "alegro", 0}}, Code::kNotFound, "nearest is allegro");
   refused({{"hand", "ur5e", 0}}, Code::kUnsupported, "ur5e is not a hand");
-  refused({{"arm", "allegro", 0}}, Code::kUnsupported, "no arm");
+  refused({{"arm", "allegro", 0}}, Code::kUnsupported, "not an arm");
   refused({{"arm", "ur5e", 0}, {"arm_base", "1 2 3", 0}}, Code::kArgument, "4 numbers");
   refused({{"arm", "ur5e", 0}, {"arm_base", "9 9 0 0", 0}}, Code::kUnsupported, "cannot bring");
   refused({{"arm", "ur5e", 0}, {"arm_pose", "0 0 0", 0}}, Code::kArgument, "6 numbers");

@@ -761,7 +761,7 @@ class Spec(Record):
     num_fields: for Pool.fields
     num_shapes: for Pool.shapes
     num_joints: of all robots
-    task: index for rdm_task_at and the like
+    task: index for Task.number
     action_repeat: control steps in one Pool.step: option action_repeat
     """
 
