@@ -179,9 +179,9 @@ TEST_P(HostileStates, EveryWordOfEverySection) {
     const bool config = s.tag == "CONF", long_list = config || s.tag == "EPIS";
     // What does not differ from the agent whose deviation is free.
     if (!whole && (long_list || s.tag == "COLL" || s.tag == "NOIS")) continue;
-    // Numbers stand at odd places behind the texts of the config. Of long lists each place gets some of the
-    // words, the next place others.
-    const size_t stride = config ? 1 : 8, skip = config ? 7 : s.tag == "EPIS" ? 3 : 1;
+    // Numbers stand at odd places behind the texts of the config. Each place gets some of the words, the next
+    // place others.
+    const size_t stride = config ? 1 : 8, skip = config ? 13 : s.tag == "EPIS" ? 5 : 2;
     for (size_t place = 0; (place + 1) * stride <= s.size; ++place)
       for (size_t i = place % skip; i < words.size(); i += skip) {
         const size_t at = std::min(place * stride, s.size - 8);

@@ -216,7 +216,7 @@ TEST(Import, GrippersHaveRailsOffsetsAndMeshes) {
   const rdm_robot_link& head = d.links[0];
   EXPECT_DOUBLE_EQ(head.lower, -2 * M_PI);
   EXPECT_DOUBLE_EQ(head.axis[2], 1);
-  EXPECT_TRUE(i.has_note(RDM_NOTE_CHANGED, "line 9: joint turn turns without limits"));
+  EXPECT_TRUE(i.has_note(RDM_NOTE_CHANGED, "line 9: joint turn has no limits"));
   // The camera is a part of it: two masses of 0.5 kg, 0.1 m apart, the second turned by a quarter.
   EXPECT_DOUBLE_EQ(head.mass, 1);
   EXPECT_NEAR(head.com[1], 0.05, 1e-12);
@@ -439,7 +439,7 @@ TEST(Refusals, Urdf) {
        {"<mass value=\"0.02\"", "<mass value=\"nan\"", RDM_ERROR_FORMAT,
         "line 26: mass: value: nan is not a number"},
        {"izz=\"1e-6\"", "izz=\"7e-6\"", RDM_ERROR_ARGUMENT,
-        "line 26: inertia: link index_proximal: the principal moments of inertia 3e-06, 3e-06, 7e-06  "
+        "line 26: inertia: link index_proximal: the principal moments of inertia 3e-06, 3e-06, 7e-06 "
         "violate "
         "the triangle inequality"},
        {"ixx=\"3e-6\"", "ixx=\"-3e-6\"", RDM_ERROR_ARGUMENT,

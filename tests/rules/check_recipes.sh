@@ -74,7 +74,7 @@ program() {
   done
   rm -f "$work/$program"
 }
-program tasks tasks/test_catalog tasks/test_task_contract tasks/test_every_task
+program tasks tasks/test_catalog tasks/test_task_contract  # test_every_task has tasks with a choice of engines alone
 program abi capi/test_contract_tasks
 program algos algos/test_algo_registry algos/test_every_algo algos/test_option_tables
 program robot robot/test_robot robot/test_robots robot/test_robot_motion robot/test_robot_poses
