@@ -113,6 +113,10 @@ Trainer go_on(const TrainFlags& flags, const Ranks* ranks) {
   std::optional<RunFolder> folder;
   if (!ranks || ranks->first()) folder.emplace(RunFolder::go_on(flags.resume));
   RunSettings run = run_settings(flags.resume);
+  if (run.functions)
+    throw Failure(
+        flags.resume +
+        ": its reward or its costs are functions in Python: continue it with redman.train(resume=...) there");
   if (flags.steps_given) run.steps = whole_steps(flags.steps);
   if (flags.threads_given) run.pool.threads = flags.run.pool.threads;
   Trainer trainer(run, ranks);

@@ -72,6 +72,25 @@ TEST(Config, ReadsItsMembers) {
   EXPECT_EQ(parse_label(kConfig.data(), kConfig.size()).limit, 25);
 }
 
+TEST(Config, KnowsWhatPythonAloneCanContinue) {
+  const RunSettings plain = config(kConfig);
+  EXPECT_FALSE(plain.functions);
+  EXPECT_EQ(plain.task_class, "");
+  std::string text = replaced(kConfig, "\"task\": \"grasp\"",
+                              R"("task": "grasp", "own_costs": {"fast": null, "drop": "a:b"})");
+  text = replaced(text, R"("set_cost_limit": ["25"], "cost_limits": {"cost": 25.0})",
+                  R"("set_cost_limit": ["fast=7"], "cost_limits": {"fast": 7.0})");
+  const RunSettings own = config(text);
+  EXPECT_TRUE(own.functions);
+  EXPECT_TRUE(own.limits.empty()) << "the task has no cost of that name";
+  EXPECT_EQ(parse_label(text.data(), text.size()).limit, 7);
+  EXPECT_EQ(config(replaced(kConfig, "\"task\"", R"("own_reward": null, "task")")).limits.size(), 1u);
+  EXPECT_TRUE(config(replaced(kConfig, "\"task\"", R"("own_reward": null, "task")")).functions);
+  EXPECT_EQ(config(replaced(kConfig, "\"task\"", R"("task_class": "press:Press", "task")")).task_class,
+            "press:Press");
+  EXPECT_NE(failure([&] { config(replaced(kConfig, "\"task\"", R"("task_class": 3, "task")")); }), "");
+}
+
 TEST(Config, KeepsTheTextsOfFiles) {
   const std::string files =
       R"("task_file": "[task]\tname\r\n", "robot_files": {"a": "x = 1\n"}, "plugins": ["./p.so"], )";
@@ -147,6 +166,11 @@ TEST(CheckpointNote, ComesBackAsWritten) {
   EXPECT_EQ(n.best_policy.size(), 6u);
   const std::string again = note_bytes(n);
   EXPECT_EQ(again, kNote + "\nPOLICY");
+}
+
+TEST(CheckpointNote, KnowsThatPythonChangedTheWorlds) {
+  EXPECT_FALSE(note(kNote).changed);
+  EXPECT_TRUE(note(replaced(kNote, "{", R"({"changed":{"options":{"max_steps":"5"},"epoch":2},)")).changed);
 }
 
 TEST(CheckpointNote, HasTheShieldsStateBeforeThePolicy) {

@@ -111,6 +111,11 @@ ActorChoice choose_actor(const std::string& word, const std::string& task) {
   if (same_name(run.pool.task, choice.task)) {
     choice.options = run.pool.options;
     choice.limits = run.limits;
+    if (run.functions)
+      std::fprintf(
+          stderr,
+          "redman: the reward or the costs of %s are functions in Python: here the task's own count\n",
+          printable(folder).c_str());
     choice.magnitudes = learns_magnitudes(run.agent);
     choice.run_shield = run.shield.settings;
   }

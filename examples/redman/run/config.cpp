@@ -176,6 +176,9 @@ RunSettings parse_config(const char* text, size_t size) {
   texts("object_files", &s.own.objects);
   if (train.contains("shield")) s.shield = shield_at(train, "shield");
   if (train.contains("tensorboard")) s.events = flag_at(train, "tensorboard");
+  if (json.contains("task_class")) s.task_class = text_at(json, "task_class");
+  s.functions = json.contains("own_reward") || json.contains("own_costs");
+  if (json.contains("own_costs")) s.limits.clear();
   return s;
 }
 
@@ -183,7 +186,10 @@ RunLabel parse_label(const char* text, size_t size) {
   const Document json = parse_json(text, size);
   RunLabel label{text_at(json, "task"), text_at(json, "algo"), seed_at(json, "seed"), -1};
   const Document& limits = object_at(json, "cost_limits");
-  if (limits.contains("cost")) label.limit = number_at(limits, "cost", -kMostLimit, kMostLimit);
+  const bool own =
+      json.contains("own_costs") && limits.size() == 1;  // else it is not known which is the first
+  const std::string first = own ? limits.begin().key() : "cost";
+  if (limits.contains(first)) label.limit = number_at(limits, first.c_str(), -kMostLimit, kMostLimit);
   return label;
 }
 

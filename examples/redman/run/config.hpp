@@ -25,6 +25,10 @@ struct RunSettings {
   TeachSettings teach;         // `from` "": nobody teaches
   ShieldWord shield;           // that rollouts are under
   std::string save_recording;  // file for what the teacher showed, "": none; not kept
+  // Of a run of redman.train in Python, which alone can continue it: "module:Class" of its task, "": another
+  // task; whether its reward or its costs are functions there. `limits` is empty where its costs are.
+  std::string task_class;
+  bool functions = false;
 };
 
 // The text of the file. `pool`, `agent` and the shield (null: none) say what the options came to; limits [cost_dim].

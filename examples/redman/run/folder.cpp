@@ -261,6 +261,10 @@ RunSettings run_settings(const std::string& folder) {
   } catch (const Failure& e) {
     throw Failure(path + " is not a run's configuration: " + e.what());
   }
+  int32_t known = -1;
+  if (!run.task_class.empty() && rdm_task_find(run.pool.task.c_str(), &known) != RDM_OK)
+    throw Failure(folder + ": its task " + run.pool.task + " is a class in Python, " + run.task_class +
+                  ": use redman.evaluate and redman.train(resume=...) there");
   load_own_files(run.pool.task, run.own, path);
   return run;
 }

@@ -41,6 +41,7 @@ Note parse_note(const char* bytes, size_t size) {
   note.epoch = static_cast<int32_t>(integer_at(json, "epoch", 0, INT32_MAX));
   note.env_steps = integer_at(json, "env_steps", 0, kMostExact);
   note.progress_bytes = static_cast<size_t>(integer_at(json, "progress_bytes", 0, kMostExact));
+  note.changed = json.contains("changed");
   // for curves alone: a clock that jumped is no reason to lose the run
   if (!json.contains("seconds")) throw Failure("seconds: missing");
   const double seconds = finite_or(json["seconds"], "seconds", -1);

@@ -20,6 +20,7 @@ struct Note {
   std::optional<Score> best;
   redman::Bytes best_policy;  // empty without `best`
   redman::Bytes shield;       // its state, empty without one
+  bool changed = false;       // parsed: a callback in Python changed options of the task
   bool clock_lost = false;    // parsed: `seconds` was out of range, and is 0
 };
 

@@ -202,8 +202,13 @@ void Trainer::save() {
     return;
   }
   folder_->check();
-  Note note{epoch_, env_steps_, progress_bytes_, earlier_seconds_ + seconds_, {}, best_, best_policy_,
-            {},     false};
+  Note note;
+  note.epoch = epoch_;
+  note.env_steps = env_steps_;
+  note.progress_bytes = progress_bytes_;
+  note.seconds = earlier_seconds_ + seconds_;
+  note.best = best_;
+  note.best_policy = best_policy_;
   if (shield_) note.shield = shield_->state();
   if (!std::isnan(last_.ret)) note.last = last_;
   const std::string bytes = note_bytes(note);
@@ -214,33 +219,45 @@ void Trainer::save() {
 
 void Trainer::restore(const std::string& path) {
   std::string bytes;
-  const auto read = [&] {
+  const auto read = [&](rdm_pool* pool) {
     size_t size = 0;
-    if (rdm_checkpoint_read(path.c_str(), agent_.get(), pool_.get(), bytes.data(), bytes.size(), &size) !=
-        RDM_OK)
+    if (rdm_checkpoint_read(path.c_str(), agent_.get(), pool, bytes.data(), bytes.size(), &size) != RDM_OK)
       throw Failure("cannot resume from " + path + ": " + rdm_last_error());
     return size;
   };
-  bytes.resize(read());  // the first time asks for the length of the note
-  bytes.resize(std::min(read(), bytes.size()));
+  const auto no_note = [&](const std::runtime_error& e) {
+    return Failure("cannot resume from " + path + ": its note was not written by this tool: " + e.what());
+  };
+  bytes.resize(read(nullptr));  // the first time asks for the length of the note
+  bytes.resize(std::min(read(nullptr), bytes.size()));
+  Note note;
   try {
-    Note note = parse_note(bytes.data(), bytes.size());
+    note = parse_note(bytes.data(), bytes.size());
+  } catch (const std::runtime_error& e) {
+    throw no_note(e);
+  }
+  if (note.changed)  // worlds of other options than the folder says
+    throw Failure("cannot resume from " + path +
+                  ": a callback in Python changed options of the task: continue it with "
+                  "redman.train(resume=...) there");
+  read(pool_.get());
+  try {
     if (note.best) redman::Policy(note.best_policy).check_fits(pool_.spec());
     if (shield_ && note.shield.empty()) throw std::runtime_error("it has no state of the shield");
     if (shield_) shield_->set_state(note.shield);
-    epoch_ = saved_epoch_ = note.epoch;
-    env_steps_ = note.env_steps;
-    progress_bytes_ = note.progress_bytes;
-    earlier_seconds_ = note.seconds;
-    if (note.clock_lost && first())
-      std::fputs("the training time in the checkpoint is out of range: Time/Total starts from 0 again\n",
-                 stderr);
-    if (note.last) last_ = *note.last;
-    best_ = note.best;
-    best_policy_ = std::move(note.best_policy);
   } catch (const std::runtime_error& e) {
-    throw Failure("cannot resume from " + path + ": its note was not written by this tool: " + e.what());
+    throw no_note(e);
   }
+  epoch_ = saved_epoch_ = note.epoch;
+  env_steps_ = note.env_steps;
+  progress_bytes_ = note.progress_bytes;
+  earlier_seconds_ = note.seconds;
+  if (note.clock_lost && first())
+    std::fputs("the training time in the checkpoint is out of range: Time/Total starts from 0 again\n",
+               stderr);
+  if (note.last) last_ = *note.last;
+  best_ = note.best;
+  best_policy_ = std::move(note.best_policy);
 }
 
 // Round 0 of the episodes that policies are chosen by is played by all, the others by those that look good.
