@@ -29,6 +29,25 @@ class World:
         return redman.train(task, **{"steps": 200, "envs": 2, "progress": False, "options": {"horizon": 32}, **arguments})
 
 
+def unpacked(pool, count):
+    """As the habit has it, for pools of as many worlds as values, too."""
+    with redman.Pool(TASK, count) as same:
+        same.reset()
+        for each in (same, pool):
+            try:
+                if count == 2:
+                    obs, info = each.reset()
+                elif count == 5:
+                    obs, reward, terminated, truncated, info = each.step()
+                else:
+                    obs, reward, cost, terminated, truncated, info = each.step()
+            except redman.UsageError as error:
+                said = error
+            else:
+                return
+        raise said
+
+
 PANDAS = WORKS if importlib.util.find_spec("pandas") else "pip install pandas"
 # What the line is, the line, and what comes of it: it works, or the words of its error.
 HABITS = (
@@ -38,6 +57,10 @@ HABITS = (
     ("the module of environments", lambda w: redman.gym.VectorEnv, WORKS),
     ("a seed of a reset", lambda w: w.pool.reset(seed=3), WORKS),
     ("options of a reset", lambda w: w.pool.reset(options={}), r"Pool\(task, options="),
+    ("Gymnasium's values of a reset", lambda w: unpacked(w.pool, 2), r"redman\.make_vec\(task, num_envs\)\.reset\(\)"),
+    ("Gymnasium's values of a step", lambda w: unpacked(w.pool, 5), r"pool\.reward, pool\.cost, .*make_vec"),
+    ("Safety-Gymnasium's values of a step", lambda w: unpacked(w.pool, 6), r"pool\.reward, pool\.cost"),
+    ("worlds one by one", lambda w: [row.shape for row in w.pool.reset()][3], WORKS),
     ("draw actions", lambda w: w.pool.step(w.pool.action_space.sample()), WORKS),
     ("bounds of observations", lambda w: w.pool.observation_space.shape == w.pool.obs.shape or 1 / 0, WORKS),
     ("the space of one world", lambda w: w.pool.single_action_space.contains(w.pool.action[0]) or 1 / 0, WORKS),

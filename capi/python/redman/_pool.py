@@ -19,6 +19,7 @@ from ._library import (Handle, assign, check, encoded, failure, filled, int32, l
 from ._names import Hinted, keywords, nearest
 from ._options import Options, Value, read_settings, settings_of
 from ._paths import by_name, named_options
+from ._returned import Returned
 from ._rows import Array, Borrowed, DoubleArray, FloatArray, address, given, made, shape_of
 from ._spaces import box
 
@@ -189,6 +190,7 @@ class Pool(Hinted):
         check(lib.rdm_pool_set_buffers(self._p, byref(buffers)))
         self._action = self._rows["action"]
         self._obs = self._rows["obs"]
+        self._of_reset, self._of_step = (Returned.of(self._obs, call) for call in ("reset", "step"))
         self._watch = Watch()
         self._begun = False  # whether an episode was begun by reset, set_state or copy
         self._starts: tuple[Optional[Recording], float] = (None, 0.0)
@@ -343,7 +345,7 @@ class Pool(Hinted):
         with self._lock:
             self._check(lib.rdm_pool_reset(self._p, address(rows), address(chosen)))
             self._begun = True
-        return self._obs
+        return self._of_reset
 
     def step(self, action: Any = None, mask: Any = None) -> FloatArray:
         """One step of every world (or of those where mask is true), of as many control steps as option action_repeat says;
@@ -363,7 +365,7 @@ class Pool(Hinted):
                 code = lib.rdm_pool_step_masked(self._p, address(chosen))
         if code or raised:
             self._check(code)
-        return self._obs
+        return self._of_step
 
     def baseline(self, kind: str = "hold") -> FloatArray:
         """Fills pool.action with the actions of a simple baseline, "zero", "hold" or "random", and returns it."""
