@@ -22,7 +22,7 @@ import redman
 
 TREE = Path(__file__).resolve().parents[2]
 TOOL = os.environ.get("REDMAN_TOOL")
-SMALL = {"task": "hand_over_safe_finger", "steps": 16000, "seed": 3, "envs": 16, "eval_every": 5, "progress": False}
+SMALL = {"task": "hand_over_safe_finger", "steps": 16000, "seed": 3, "envs": 16, "eval_every": 5, "checkpoint_every": 5, "progress": False}
 
 
 def tool(*words):

@@ -18,8 +18,9 @@ WHAT IS THERE. help(redman.Pool) and so on tell more.
     worlds          Pool, Sensors, Guard; spec, memory; Map, sample_furthest
     learners        Agent, Epoch, CostLimits, Options; Recording, CloneReport; Ranks
     policies        Policy, Actor, Origin, HoldWarning; Planner, PlanInfo; Shield, ShieldRow, project
-    runs            train, Run, Callback; evaluate, Evaluation, Player; curve, Curve, Curves; stats
-    your own        Task, RowTask, Verdict, Worlds, SceneBuilder; Robot.create, Object.create, a .task file; check_task, c_function
+    runs            train, Run; callbacks, Callback, Training; evaluate, Evaluation, Player; curve, Curve, Curves; stats
+    your own        Rows, Costs: rewards and costs of train and evaluate; Task, RowTask, Verdict, Worlds, SceneBuilder; Robot.create,
+                    Object.create, a .task file; check_task, c_function
     environments    redman.gym, redman.sb3, redman.safety, redman.omnisafe; make, make_vec
     records         Algo, Build, Camera, Cost, Field, Joint, MapInfo, Note, Object, Option, PlannerSpec, PolicyInfo, PoolStats,
                     Poses, PretrainReport, RayHit, RecordingInfo, Robot, Shape, ShieldStats, Spec, TaskInfo
@@ -40,7 +41,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from . import stats
+from . import callbacks, stats
 from ._abi import (Autoreset, BaselineKind, Build, Feature, JointKind, MapInfo, OptionKind, OptionLevel, PlannerSpec, PolicyInfo,
                    PoolStats, PretrainReport, RayHit, RecordingInfo, ResultCode, RobotKind, Scale, ShapeKind, ShieldKind, ShieldStats,
                    Spec, Status)
@@ -63,6 +64,7 @@ from ._map import Map, sample_furthest
 from ._names import moved
 from ._object import Object, objects
 from ._options import Options
+from ._own_costs import Costs, Rows
 from ._own_task import RowTask, Task, Verdict
 from ._planner import PlanInfo, Planner
 from ._play import Evaluation, Player, evaluate
@@ -74,21 +76,23 @@ from ._robot import Note, Poses, Robot, robot, robots
 from ._scene import SceneBuilder
 from ._shield import Shield, ShieldRow, project
 from ._teach import CloneReport
-from ._train import Callback, Run, train
+from ._run import Run
+from ._train import train
 from ._worlds_rows import Worlds
+from .callbacks import Callback, Training
 
 __version__ = version = build().version
 
 __all__ = [
     "Actor", "Agent", "Algo", "AllocationError", "ArgumentError", "Autoreset", "BaselineKind", "Build", "Callback", "Camera",
-    "CancelledError", "CloneReport", "Cost", "CostLimits", "Curve", "Curves", "Epoch", "Error", "Evaluation", "Feature",
+    "CancelledError", "CloneReport", "Cost", "CostLimits", "Costs", "Curve", "Curves", "Epoch", "Error", "Evaluation", "Feature",
     "Field", "FileError", "FormatError", "Guard", "HoldWarning", "InternalError", "Joint", "JointKind", "Map", "MapInfo",
     "MissingFileError", "NotFoundError", "Note", "NoteKind", "Object", "Option", "OptionKind", "OptionLevel", "Options",
     "Origin", "PhysicsError", "PlanInfo", "Planner", "PlannerSpec", "Player", "Policy", "PolicyInfo", "Pool", "PoolStats",
     "Poses", "PretrainReport", "RangeError", "Ranks", "RayHit", "Recording", "RecordingInfo", "ResultCode", "Robot",
-    "RobotKind", "RowTask", "Run", "Scale", "SceneBuilder", "Sensors", "Shape", "ShapeKind", "Shield", "ShieldKind", "ShieldRow", "ShieldStats", "Spec",
-    "StateError", "Status", "Task", "TaskInfo", "UnsupportedError", "UsageError", "Verdict", "VersionError", "Worlds", "__version__", "algo", "algos", "build",
-    "c_function", "check_task", "curve", "evaluate", "features", "load", "load_object", "load_robot", "load_task", "make",
+    "RobotKind", "RowTask", "Rows", "Run", "Scale", "SceneBuilder", "Sensors", "Shape", "ShapeKind", "Shield", "ShieldKind", "ShieldRow", "ShieldStats", "Spec",
+    "StateError", "Status", "Task", "TaskInfo", "Training", "UnsupportedError", "UsageError", "Verdict", "VersionError", "Worlds", "__version__", "algo", "algos", "build",
+    "c_function", "callbacks", "check_task", "curve", "evaluate", "features", "load", "load_object", "load_robot", "load_task", "make",
     "make_vec", "memory", "objects", "planner_options", "project", "robot", "robots", "sample_furthest", "shield_options",
     "spec", "stats", "task", "tasks", "train", "version",
 ]

@@ -208,9 +208,11 @@ class Agent(Taught, Hinted):
 
         reward and cost are sums over the decision, final_obs is read where truncated, steps are control steps.
         """
-        transition, kept = self._transition("record", reward=reward, cost=cost, terminated=terminated,
-                                            truncated=truncated, final_obs=final_obs, valid=valid, success=success,
-                                            steps=steps)
+        self._record("record", reward=reward, cost=cost, terminated=terminated, truncated=truncated, final_obs=final_obs,
+                     valid=valid, success=success, steps=steps)
+
+    def _record(self, call: str, **said: Any) -> None:
+        transition, kept = self._transition(call, **said)
         with self._lock:
             self._check(lib.rdm_agent_record(self._a, byref(transition)))
         del kept

@@ -8,7 +8,7 @@ import re
 import sys
 from ctypes import byref, c_size_t
 from pathlib import Path
-from typing import Any, Callable, Mapping, TypeVar
+from typing import Any, Callable, Mapping, Optional, TypeVar
 
 from . import _abi
 from ._error import ArgumentError, Error, RangeError, UsageError, error_of
@@ -141,6 +141,14 @@ def whole(value: Any, name: str, low: int, high: int) -> int:
     if not low <= number <= high:
         raise RangeError(f"{name}: {number} is not in {low} to {high}")
     return number
+
+
+def all_cores(threads: Optional[int], worlds: int) -> int:
+    """The number of threads; None: as many as this process has cores, but no more than worlds."""
+    if threads is not None:
+        return whole(threads, "threads", 0, (1 << 31) - 1)
+    has = getattr(os, "sched_getaffinity", None)
+    return max(1, min(len(has(0)) if has else os.cpu_count() or 1, worlds, 256))
 
 
 def int32(value: Any, name: str) -> int:

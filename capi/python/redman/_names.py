@@ -131,5 +131,5 @@ def moved(names: Mapping[str, Any], public: Iterable[str]) -> None:
     """Makes classes and functions of private modules appear as members of the package."""
     for name in public:
         thing = names[name]
-        if isinstance(thing, (type, type(moved))) and str(thing.__module__).startswith("redman._"):
+        if isinstance(thing, (type, type(moved))) and str(thing.__module__).startswith(("redman._", "redman.callbacks")):
             thing.__module__ = "redman"

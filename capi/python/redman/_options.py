@@ -71,14 +71,18 @@ def option_array(options: Options, kinds: Kinds = {}) -> Any:
     return array
 
 
-def read_settings(call: Callable[..., int], handle: Any, kinds: Mapping[str, int]) -> dict[str, Value]:
-    """All options of a pool or an agent, as call(handle, text, capacity, &size) writes them."""
+def settings_texts(call: Callable[..., int], handle: Any) -> dict[str, str]:
+    """All options of a pool, an agent or a shield, as call(handle, text, capacity, &size) writes them."""
     size = c_size_t()
     check(call(handle, None, 0, byref(size)))
     raw = ctypes.create_string_buffer(size.value + 1)
     check(call(handle, raw, len(raw), byref(size)))
-    pairs = (line.split("=", 1) for line in text(raw.value).split("\n") if line)
-    return {key: value_of(kind_of(key, kinds), value) for key, value in pairs}
+    return dict(line.split("=", 1) for line in text(raw.value).split("\n") if line)
+
+
+def read_settings(call: Callable[..., int], handle: Any, kinds: Mapping[str, int]) -> dict[str, Value]:
+    """The same as values."""
+    return {key: value_of(kind_of(key, kinds), value) for key, value in settings_texts(call, handle).items()}
 
 
 def kind_of(key: str, kinds: Kinds) -> Optional[int]:

@@ -13,8 +13,11 @@ from . import _png, stats
 from ._actor import worlds_of
 from ._discovery import TaskName, task_name
 from ._error import ArgumentError, Error, NotFoundError
-from ._names import nearest
+from ._library import all_cores
+from ._limits import CostLimits, each_cost
+from ._names import keywords, nearest
 from ._options import Options
+from ._own_costs import Costs, Own, RowFunction
 from ._policy import Backup, Origin, Policy
 from ._pool import Pool
 from ._rows import Array, DoubleArray, FloatArray
@@ -24,7 +27,7 @@ from ._worlds import Center, center_of
 if TYPE_CHECKING:
     import numpy.typing as npt
     from ._agent import Agent
-    from ._train import Run
+    from ._run import Run
 
 # What ends an episode, and what goes on: bits of Pool.status (redman.h, RDM_STATUS_*) by their names in results.
 _END_FLAGS = {"diverged": 2, "bad_actions": 4, "task_failed": 8}
@@ -95,6 +98,7 @@ class Evaluation:
     slowed: int = 0  # steps in which a thing spun faster than the engine follows
     bad_actions: int = 0  # episodes that ended as an action was not finite
     task_failed: int = 0  # episodes that ended as a function of the task failed
+    cost_names: tuple[str, ...] = ()  # of the columns of cost
 
     @property
     def feasible(self) -> bool:
@@ -243,51 +247,56 @@ class _Plays:
         self._began[worlds] = True
 
 
-def limits_of(pool: Pool, wanted: Union[None, Sequence[Optional[float]], Mapping[str, float]]) -> list[Optional[float]]:
-    """The given limits, for each column or by name; else the task's own."""
-    if isinstance(wanted, Mapping):
-        return [wanted.get(name) for name in pool.costs]
-    if wanted is not None:
-        return list(wanted)
-    return [cost.limit for cost in pool.costs.values()]
+def _limits(usual: Mapping[str, Optional[float]], wanted: CostLimits) -> list[Optional[float]]:
+    """The usual limits, overridden by the given ones."""
+    rows = each_cost(wanted, [-1.0 if limit is None else limit for limit in usual.values()], list(usual), "cost_limits")
+    return [None if limit < 0 else limit for limit in rows or []]
 
 
 def play(pool: Pool, player: Any, episodes: int, magnitudes: bool = False, action_repeat: Optional[int] = None,
-         center: Optional[FloatArray] = None, shield: Optional[Shield] = None) -> list[dict[str, Any]]:
+         center: Optional[FloatArray] = None, shield: Optional[Shield] = None, own: Optional[Own] = None) -> list[dict[str, Any]]:
     """Each episode's return, costs, length, fall and success; the pool's autoreset is off, and it was just reset. With
     magnitudes, costs are sums of cost_raw where it is above 0, as an agent with cost_signal=raw learns them; the pool then
     makes single control steps, since it shows only cost_raw of the last one. action_repeat: control steps that an action of
-    a baseline or a function lasts, None: one step of the pool. shield checks each decision."""
-    if magnitudes and pool.spec.action_repeat != 1:
-        raise ArgumentError(f"magnitudes: cost_raw is shown for each step of the pool, and one has "
-                            f"{pool.spec.action_repeat} control steps")
+    a baseline or a function lasts, None: one step of the pool. shield checks each decision. own: rewards and costs that
+    replace the task's; the pool makes single control steps then too, and `above` counts those in which a cost was above 0."""
+    if (magnitudes or own) and pool.spec.action_repeat != 1:
+        raise ArgumentError(f"{'costs' if own else 'magnitudes: cost_raw'} of each control step, and a step of the pool has "
+                            f"{pool.spec.action_repeat}")
     n = pool.num_envs
     plays = _Plays(player, pool, action_repeat, center, shield)
     number = np.arange(n)
     playing = number < episodes
     success = np.zeros(n, np.bool_)
-    raw = np.zeros((n, pool.cost_dim))
+    raw = np.zeros((n, pool.cost_dim if own is None else len(own.names(pool))))
+    gained, above = np.zeros(n), np.zeros(n, np.int64)
     flagged = np.zeros((n, len(_STEP_FLAGS)), np.int64)  # steps so far
     out: list[dict[str, Any]] = [{} for _ in range(episodes)]
     while playing.any():
         plays.act(playing)
         pool.step(mask=playing)
         success |= pool.success & playing
-        raw += np.maximum(pool.cost_raw, 0) * playing[:, None]
+        if own is None:
+            raw += np.maximum(pool.cost_raw, 0) * playing[:, None]
+        else:
+            reward, cost = own.look(pool)
+            gained += reward * playing
+            raw += cost * playing[:, None]
+            above += (cost > 0).any(axis=1) & playing
         for k, bit in enumerate(_STEP_FLAGS.values()):
             flagged[:, k] += (pool.status & bit != 0) & playing
         ended = (pool.terminated | pool.truncated) & playing
         if not ended.any():
             continue
         for i in np.flatnonzero(ended):
-            cost = raw[i].copy() if magnitudes else pool.episode_cost[i].astype(np.float64)
-            out[number[i]] = {"return": float(pool.episode_return[i]), "cost": cost,
+            cost = raw[i].copy() if magnitudes or own else pool.episode_cost[i].astype(np.float64)
+            out[number[i]] = {"return": float(gained[i] if own else pool.episode_return[i]), "cost": cost, "above": int(above[i]),
                               "length": int(pool.episode_step[i]), "fall": bool(pool.terminated[i]),
                               "success": bool(success[i]), "status": int(pool.episode_status[i]),
                               **dict(zip(_STEP_FLAGS, flagged[i].tolist()))}
             number[i] += n
         success[ended] = False
-        raw[ended] = 0
+        raw[ended] = gained[ended] = above[ended] = 0
         flagged[ended] = 0
         playing = number < episodes
         again = ended & playing
@@ -311,7 +320,7 @@ class _Judged:
 
 def _judged(player: Player, task: Optional[str]) -> _Judged:
     from ._agent import Agent
-    from ._train import Run
+    from ._run import Run
     if isinstance(player, Run):
         player = player.policy
     if isinstance(player, Agent):
@@ -357,11 +366,16 @@ def _folded(key: str) -> str:
     return key.lower().replace("-", "_")
 
 
+@keywords(aliases={"envs": "num_envs", "n_envs": "num_envs", "num_threads": "threads", "cost_limit": "cost_limits",
+                   "num_episodes": "episodes", "n_episodes": "episodes", "n_eval_episodes": "episodes", "policy": "player",
+                   "model": "player", "env_id": "task", "env": "task"},
+          hints={"deterministic": "the mean action plays; a sampling one is redman.evaluate(policy.actor(pool, stochastic=True))",
+                 "render": "the command `redman render` makes pictures and pages of an episode"}, options=True)
 def evaluate(player: Player, task: Optional[TaskName] = None, episodes: int = 100, num_envs: int = 16, seed: int = 0,
-             threads: int = 0, options: Optional[Options] = None,
-             cost_limits: Optional[Sequence[Optional[float]]] = None, magnitudes: Optional[bool] = None, *,
-             action_repeat: Union[None, int, str] = None, center: Center = None, shield: Shielding = None,
-             shield_policy: Optional[Backup] = None) -> Evaluation:
+             threads: Optional[int] = None, options: Optional[Options] = None, cost_limits: CostLimits = None,
+             magnitudes: Optional[bool] = None, *, action_repeat: Union[None, int, str] = None, center: Center = None,
+             shield: Shielding = None, shield_policy: Optional[Backup] = None, reward: Optional[RowFunction] = None,
+             costs: Optional[Costs] = None) -> Evaluation:
     """How good a policy is over whole episodes: the same ones as `redman eval` plays for the same seed and number of worlds.
 
     player: a Policy, a Run, a run folder or policy file, an Agent, "trained" (the policy that comes with the task), a baseline
@@ -374,6 +388,13 @@ def evaluate(player: Player, task: Optional[TaskName] = None, episodes: int = 10
     of redman hold their actions themselves), and center, what an action of 0 does ("initial", or [action_dim]).
 
     With magnitudes, costs are sums of cost_raw where it is above 0, as an agent with cost_signal=raw learns them.
+    threads: None uses all cores that this process may use; the episodes are the same for any number. cost_limits: a number
+    for the first cost, a list with one for each, or a dict by name.
+
+    reward, costs: functions of your own that replace the task's reward and costs, as in redman.train. For a policy of a run
+    with such functions, these are used unless others are given.
+
+        redman.evaluate("trained", "ball_run", costs={"fast": lambda rows: rows.speed("velocity") > 2}, cost_limits=20)
 
     shield: a redman.Shield checks every decision; True, or a dict of its options, budgets, seed and threads. Its first
     backup is shield_policy, or the policy itself. When nothing keeps the budgets in a world, StateError is raised; with
@@ -390,13 +411,16 @@ def evaluate(player: Player, task: Optional[TaskName] = None, episodes: int = 10
     chosen = known if task is None else task
     assert chosen is not None
     own: Mapping[str, Any] = {}
-    limits: Union[None, Sequence[Optional[float]], Mapping[str, float]] = cost_limits
+    functions = Own.wanted(reward, costs)
+    usual: Optional[Mapping[str, float]] = None  # limits of the run
     if known is not None and _folded(chosen) == _folded(known):
         own = judged.options
         if origin is not None and _folded(origin.task) == _folded(chosen):
             own = origin.options
-            limits = origin.cost_limits if limits is None else limits
+            usual = origin.cost_limits
             magnitudes = origin.magnitudes if magnitudes is None else magnitudes
+            if origin.own is not None:
+                functions = origin.own if functions is None else functions
     given_options = {_folded(key) for key in options or {}}
     laid = {key: value for key, value in own.items() if _folded(key) not in given_options}
     laid.update(options or {})
@@ -407,10 +431,23 @@ def evaluate(player: Player, task: Optional[TaskName] = None, episodes: int = 10
         laid = {key: value for key, value in laid.items() if _folded(key) != "action_repeat"}
         laid["action_repeat"] = 0 if repeat == "task" else repeat
     center = judged.center if center is None else center
-    pool = Pool(chosen, min(num_envs, episodes), seed, threads, autoreset="off", options=laid)
+    worlds = min(num_envs, episodes)
+    threads = all_cores(threads, worlds)
+    pool = Pool(chosen, worlds, seed, threads, autoreset="off", options=laid)
     steps = pool.spec.action_repeat
-    if magnitudes and steps > 1:
-        pool = Pool(chosen, min(num_envs, episodes), seed, threads, autoreset="off", options=singly(laid))
+    if (magnitudes or functions) and steps > 1:
+        pool = Pool(chosen, worlds, seed, threads, autoreset="off", options=singly(laid))
+    if functions is not None:
+        functions.ready(pool)
+        magnitudes = False
+    names = list(pool.cost_names) if functions is None else functions.names(pool)
+    if usual is not None:
+        known_limits: dict[str, Optional[float]] = {name: usual.get(name) for name in names}
+    elif functions is None or functions.costs is None:
+        known_limits = {name: cost.limit for name, cost in pool.costs.items()}
+    else:
+        known_limits = {name: None for name in names}
+    limits = _limits(known_limits, cost_limits)
     player = judged.player
     if isinstance(player, Policy):
         held = player.info.action_repeat // pool.spec.action_repeat
@@ -421,9 +458,10 @@ def evaluate(player: Player, task: Optional[TaskName] = None, episodes: int = 10
     with pool:
         guard = shield_of(pool, shield, shield_policy, held)
         pool.reset()
-        played = play(pool, player, episodes, bool(magnitudes), steps, center_of(pool, center), guard)
+        played = play(pool, player, episodes, bool(magnitudes), steps, center_of(pool, center), guard, functions)
         counts = {} if guard is None else {"decisions": guard.stats.decisions, "interventions": guard.interventions}
-        return summary(played, limits_of(pool, limits), pool.stats.violations, **counts)
+        above = pool.stats.violations if functions is None else sum(episode["above"] for episode in played)
+        return summary(played, limits, above, names, **counts)
 
 
 def singly(options: Mapping[str, Any]) -> dict[str, Any]:
@@ -431,7 +469,7 @@ def singly(options: Mapping[str, Any]) -> dict[str, Any]:
     return {**{key: value for key, value in options.items() if _folded(key) != "action_repeat"}, "action_repeat": 1}
 
 
-def summary(played: Sequence[dict[str, Any]], limits: Sequence[Optional[float]], violating_steps: int,
+def summary(played: Sequence[dict[str, Any]], limits: Sequence[Optional[float]], violating_steps: int, names: Sequence[str] = (),
             **shielded: int) -> Evaluation:
     """Means over episodes, with a warning where worlds failed. shielded: decisions and interventions."""
     counts = {name: sum(episode[name] for episode in played) for name in _STEP_FLAGS}
@@ -470,7 +508,7 @@ def summary(played: Sequence[dict[str, Any]], limits: Sequence[Optional[float]],
         violation_rate=(int(over.sum()) + lost) / len(played), cost_limits=list(limits),
         violating_steps=violating_steps, returns=of_each([episode["return"] for episode in played]),
         costs=of_each([episode["cost"] for episode in played]), lengths=of_each([episode["length"] for episode in played]),
-        successes=successes, **shielded, **counts)
+        successes=successes, cost_names=tuple(names), **shielded, **counts)
 
 
 def strip(policy: Policy, frames: int = 6, width: int = 240, height: int = 180) -> Optional[bytes]:

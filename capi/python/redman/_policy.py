@@ -13,13 +13,15 @@ import numpy as np
 
 from . import _abi, _discovery
 from ._actor import Actor, on_task
-from ._error import ArgumentError, FileError, FormatError, MissingFileError, UsageError, VersionError
+from ._error import ArgumentError, FileError, FormatError, MissingFileError, NotFoundError, UsageError, VersionError
 from ._export import export
 from ._files import MOST_JSON, read_bytes, read_whole, write_whole
 from ._hold import decided, warn
+from ._imported import thing_at
 from ._library import Handle, check, filled, lib, policy_folders
 from ._names import Hinted
 from ._options import Value
+from ._own_costs import Own
 from ._pool import Pool
 from ._rows import Array, FloatArray, clouds, given
 from ._tensors import Tensors
@@ -37,6 +39,7 @@ class Origin:
     cost_limits: Mapping[str, float] = field(default_factory=dict)  # of the costs that have one, by name
     magnitudes: bool = False  # costs are sums of cost_raw, and the limits in that unit (option cost_signal=raw)
     folder: Optional[str] = None
+    own: Optional[Own] = None  # rewards and costs of your own, in the place of the task's
 
     @classmethod
     def of_folder(cls, folder: Path) -> Optional[Origin]:
@@ -44,6 +47,7 @@ class Origin:
         try:
             said = json.loads(read_bytes(folder / "config.json", MOST_JSON))
             own = {member: said[member] for member in ("task", "task_file", "robot_files", "object_files") if member in said}
+            functions = Own.of_config(said, f"run {folder}")
             options = dict(pair.split("=", 1) for pair in said["set"])
             limits = {str(name): float(limit) for name, limit in said["cost_limits"].items()}
             magnitudes = said["algo_cfgs"].get("cost_signal") == "raw"
@@ -56,7 +60,19 @@ class Origin:
         if len(own) > 1:
             from ._own_files import load_kept
             load_kept(own, f"run {folder}")
-        return cls(own["task"], options, limits, magnitudes, str(folder))
+        if "task_class" in said:
+            load_task_class(str(said["task"]), str(said["task_class"]), f"run {folder}")
+        return cls(own["task"], options, limits, magnitudes and functions is None, str(folder), functions)
+
+
+def load_task_class(name: str, path: str, where: str) -> None:
+    """Registers the class of a task in Python, unless a task of its name is known. A NotFoundError names its module."""
+    try:
+        _discovery.task(name)
+    except NotFoundError:
+        kind = thing_at(path, f"{where}: its task {name}")
+        if _discovery.task_name(kind) != name:
+            raise ArgumentError(f"{where}: its task is {name}, and {path} is {_discovery.task_name(kind)}") from None
 
 
 # A policy, its file or run folder, or "trained": the one that comes with the task.

@@ -36,12 +36,17 @@ class Ranks:
         if gather is None and ranks > 1:
             raise UsageError("gather: how messages of several ranks are exchanged, as comm.allgather of mpi4py")
         self.rank, self.ranks = rank, ranks
+        self._messages = gather
         self._struct = sized(_abi.rdm_ranks)
         assign(self._struct, {"rank": rank, "ranks": ranks})
         if gather is not None:
             self._gather = self._struct.gather = c_function("rdm_ranks.gather", _gathering(gather, ranks))
         if swap is not None:
             self._swap = self._struct.swap = c_function("rdm_ranks.swap", _swapping(swap))
+
+    def _any(self, mine: bool) -> bool:
+        """Whether it holds on any rank."""
+        return mine if self._messages is None else any(b"\1" == said for said in self._messages(b"\1" if mine else b"\0"))
 
     def __reduce__(self) -> Any:
         raise UsageError("redman.Ranks belong to one process: make them in each")

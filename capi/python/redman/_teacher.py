@@ -1,0 +1,200 @@
+"""What a run learns from before it learns from rewards: a policy or a recording. This is the part of `redman train --from` in
+which no teacher acts."""
+from __future__ import annotations
+
+import copy
+import os
+from dataclasses import dataclass, field
+from typing import Any, Mapping, Optional, Union
+
+from . import _discovery
+from ._agent import Agent
+from ._error import ArgumentError, UnsupportedError, UsageError
+from ._library import whole
+from ._names import nearest
+from ._options import Value, shown
+from ._policy import Backup, Policy, policy_of
+from ._pool import Pool
+from ._recording import Recording
+
+# A policy, its file or run folder, "trained", a run; a recording or its file (.npz).
+Teacher = Union[Backup, Recording, Any]
+
+_POLICY_SAMPLES = 100_000.0  # that a policy's statistics of observations count for
+# Options of the learner that keep what was taught, under the caller's own.
+_TAUGHT: tuple[tuple[str, Value], ...] = (
+    ("std_min", "0.01"), ("init_std", "0.03"), ("learning_rate", "1e-9"), ("critic_learning_rate", "1e-3"),
+    ("lr_schedule", "kl"), ("kl_target", "0.02"), ("lr_min", "1e-9"), ("warm_epochs", "10"), ("obs_freeze", "1"))
+_SETTINGS: dict[str, Any] = {
+    "decisions": 640, "noise": 0.05, "success_only": False, "clone_epochs": 20, "clone_patience": 0, "clone_rate": 1e-3,
+    "validation": 0.1, "pretrain": 0, "pretrain_epochs": 10, "dagger": 0, "beta": 0.5, "start_share": 0.0,
+    "start_share_end": 0.0}
+_OF_THE_TOOL = ("decisions", "noise", "pretrain", "pretrain_epochs", "dagger", "beta", "start_share_end")
+
+
+def _is_recording(teacher: Any) -> bool:
+    return isinstance(teacher, Recording) or (isinstance(teacher, (str, os.PathLike)) and
+                                              str(teacher).lower().endswith(".npz"))
+
+
+@dataclass
+class Teach:
+    """The arguments from_ and teach of train, and teach_cfgs of config.json."""
+
+    teacher: Any  # as it was given
+    settings: dict[str, Any] = field(default_factory=lambda: dict(_SETTINGS))
+    said: str = ""  # what config.json calls the teacher
+    policy: Optional[Policy] = None  # or
+    recording: Optional[Recording] = None
+
+    @classmethod
+    def wanted(cls, teacher: Any, settings: Optional[Mapping[str, Any]], task: Optional[str]) -> Optional[Teach]:
+        """The teacher that was asked for; None: there is none."""
+        if teacher is None:
+            if settings:
+                raise UsageError("teach: from whom? from_=a policy, a run folder, or a recording (.npz)")
+            return None
+        teach = cls(teacher)
+        for key, value in (settings or {}).items():
+            teach._set(key, value)
+        if hasattr(teacher, "policy") and hasattr(teacher, "env_steps"):  # a run
+            teach.teacher = teacher.policy
+        word = teacher if isinstance(teacher, str) else ""
+        if word == "demo" or str(teacher).endswith(".demo"):
+            raise UnsupportedError(f"from_={word!r}: the command plays the script of a demonstration: redman train --from {word}"
+                                   "; its --save-recording demo.npz writes what from_=\"demo.npz\" takes")
+        if word in ("zero", "hold", "random"):
+            raise ArgumentError(f"from_={word!r}: there is nothing to learn from this")
+        if _is_recording(teacher):
+            teach.recording = teacher if isinstance(teacher, Recording) else Recording.load(teacher)
+            teach.said = "a recording" if isinstance(teacher, Recording) else os.fspath(teacher)
+        else:
+            if word == "trained" and task is None:
+                raise UsageError("from_=\"trained\": say which task")
+            teach.policy = policy_of(teach.teacher, task or "")
+            origin = teach.policy.origin
+            named = isinstance(teacher, (str, os.PathLike))
+            teach.said = os.fspath(teacher) if named else origin.folder if origin and origin.folder else "a policy"
+        return teach
+
+    @classmethod
+    def of_config(cls, said: Mapping[str, Any]) -> Teach:
+        """The teacher of a run that is resumed, which is read again only where the run still needs it."""
+        teach = cls(said["from"], {**_SETTINGS, **{key: value for key, value in said.items() if key != "from"}}, said["from"])
+        return teach
+
+    def config(self) -> dict[str, Any]:
+        return {"from": self.said, **self.settings}
+
+    def _set(self, key: str, value: Any) -> None:
+        if key in _OF_THE_TOOL:
+            raise UnsupportedError(f"teach: {key} is of teachers that act: the command `redman train --from` has it")
+        if key not in _SETTINGS:
+            raise UsageError(f"teach: no {key}{nearest(key, set(_SETTINGS) - set(_OF_THE_TOOL))}; there are "
+                             f"{', '.join(name for name in _SETTINGS if name not in _OF_THE_TOOL)}")
+        if key == "start_share":
+            first, last = value if isinstance(value, (tuple, list)) else (value, value)
+            if not (0 <= first <= 1 and 0 <= last <= 1):
+                raise ArgumentError(f"teach: start_share: {value!r} is no share of 0 to 1, or a pair of such")
+            self.settings.update(start_share=float(first), start_share_end=float(last))
+        elif isinstance(_SETTINGS[key], bool):
+            self.settings[key] = bool(value)
+        elif isinstance(_SETTINGS[key], int):
+            self.settings[key] = whole(value, f"teach: {key}", 1 if key == "clone_epochs" else 0, 100_000)
+        else:
+            most = 0.9 if key == "validation" else 10.0
+            if not 0 <= float(value) <= most:
+                raise ArgumentError(f"teach: {key}: {value!r} is not in 0 to {most}")
+            self.settings[key] = float(value)
+
+    @property
+    def task(self) -> Optional[str]:
+        """The task of the teacher."""
+        if self.policy is not None:
+            return self.policy.info.task or None
+        assert self.recording is not None
+        return self.recording.info.task or None
+
+    def task_options(self, task: str) -> list[tuple[str, Value]]:
+        """Options of the task as the teacher had them, which the caller's override."""
+        if self.policy is None:
+            return []
+        out: list[tuple[str, Value]] = []
+        origin, info = self.policy.origin, self.policy.info
+        if origin is not None and origin.task == task == info.task:
+            out += origin.options.items()
+        if info.num_points:
+            out += eyes(info.num_points, info.action_repeat, "true" if info.point_color else "false")
+        return out
+
+    def algo_options(self) -> tuple[tuple[str, Value], ...]:
+        return _TAUGHT
+
+    def apply(self, agent: Agent, pool: Pool, seed: int) -> None:
+        """Gives the agent what it learns by imitation, and the worlds their starts."""
+        if self.policy is not None:
+            self.policy.check(pool)
+            agent.warm_start(self.policy, _POLICY_SAMPLES)
+        recording = self.recording
+        if recording is not None:
+            if self.settings["success_only"]:
+                recording = self.recording = copy.deepcopy(recording)  # it may be the caller's
+                recording.filter(True)
+                if not len(recording):
+                    raise ArgumentError("teach: success_only: no episode of the recording succeeded")
+            agent.clone(recording, epochs=self.settings["clone_epochs"], patience=self.settings["clone_patience"],
+                        learning_rate=self.settings["clone_rate"], learning_rate_end=self.settings["clone_rate"] / 100,
+                        validation=self.settings["validation"], seed=seed)
+        imitates = float(agent.options["imitation"]) > 0
+        if recording is None:
+            if imitates or self.starts:
+                raise UsageError("teach: start_share and option imitation need a recording: from_=\"demo.npz\"")
+            return
+        if imitates:
+            agent.recording = recording
+        if self.starts:
+            pool.set_starts(recording, self.settings["start_share"])
+
+    def again(self, agent: Agent, pool: Pool, seed: int) -> None:
+        """Does the same for a run that is resumed, where the run still needs it."""
+        if float(agent.options["imitation"]) <= 0 and not self.starts:
+            return
+        if not _is_recording(self.teacher):
+            raise UnsupportedError(f"resume: it still learns from {self.said!r}, which the command plays: redman train --resume")
+        self.recording = Recording.load(self.teacher)
+        self.apply(agent, pool, seed)
+
+    @property
+    def starts(self) -> bool:
+        """Whether episodes start from states of the recording."""
+        return bool(self.settings["start_share"] > 0 or self.settings["start_share_end"] > 0)
+
+    def draw_starts(self, pool: Pool, done: float) -> None:
+        """Moves the share of such starts from its first value to its last, in step with the run."""
+        if self.starts:
+            first, last = self.settings["start_share"], self.settings["start_share_end"]
+            pool.set_starts(None, first + done * (last - first))
+
+
+def eyes(points: int, repeat: int, color: str) -> list[tuple[str, Value]]:
+    """Options of a task that let its worlds show what a network of points reads."""
+    return [("modality", "points"), ("points", str(points)), ("sampling", "voxel"), ("point_color", color),
+            ("sense_every", str(repeat))]
+
+
+def eyes_of(task: str, algo: str, of_algo: Mapping[str, Value]) -> list[tuple[str, Value]]:
+    """The same for an agent of these options; empty without option encoder."""
+    known = _discovery.algo(algo).options
+    defaults = _discovery.task(task).defaults
+
+    def value(key: str) -> str:
+        """As the command has it: a flag that was not given is a number."""
+        if key in of_algo:
+            return shown(key, of_algo[key])
+        usual = defaults.get(key, known[key].default)
+        return shown(key, int(usual) if isinstance(usual, bool) else usual)
+
+    if not value("encoder"):
+        return []
+    return eyes(max(1, int(float(value("encoder_points")))), max(1, int(float(value("action_repeat")))),
+                value("encoder_color"))
