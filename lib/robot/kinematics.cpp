@@ -32,6 +32,17 @@ Vec3 turn_between(const Quat& to, const Quat& from) {
   return {sign * d.x, sign * d.y, sign * d.z};
 }
 
+// How a joint at X_RL moves a point at p, and turns it: m, then rad, of a rad (m).
+Vector6 twist_of(const RobotLink& l, const Pose& X_RL, const Vec3& p) {
+  const Vec3 axis = rotate(X_RL.q, l.axis);
+  const bool slides = l.kind == JointKind::kPrismatic;
+  const Vec3 linear = slides ? axis : cross(axis, p - X_RL.p);
+  const Vec3 angular = slides ? Vec3{} : axis;
+  Vector6 out;
+  out << linear.x, linear.y, linear.z, angular.x, angular.y, angular.z;
+  return out;
+}
+
 struct Reach {
   const Robot& robot;
   Pose X_RL[kMaxRobotLinks];
@@ -42,13 +53,8 @@ struct Reach {
     link_poses(robot, q, X_RL);
     X_RF = robot.flange == kRootLink ? robot.X_LF : X_RL[robot.flange] * robot.X_LF;
     J.leftCols(robot.links.count).setZero();
-    for (int32_t i = robot.flange; i >= 0; i = robot.links[i].parent) {
-      const Vec3 axis = rotate(X_RL[i].q, robot.links[i].axis);
-      const bool slides = robot.links[i].kind == JointKind::kPrismatic;
-      const Vec3 linear = slides ? axis : cross(axis, X_RF.p - X_RL[i].p);
-      const Vec3 angular = slides ? Vec3{} : axis;
-      J.col(i) << linear.x, linear.y, linear.z, angular.x, angular.y, angular.z;
-    }
+    for (int32_t i = robot.flange; i >= 0; i = robot.links[i].parent)
+      J.col(i) = twist_of(robot.links[i], X_RL[i], X_RF.p);
   }
   Matrix6 square() const {
     Matrix6 a = Matrix6::Zero();
@@ -70,6 +76,36 @@ double dexterity(Reach* reach, const double* q, double length) {
   reach->J.topRows(3) /= length;
   const double square = reach->square().determinant();
   return room * std::sqrt(std::max(square, 0.0));
+}
+
+// q of the joints of `by` after one damped step for e, again without a joint that it takes beyond its bounds.
+void damped_step(const Jacobian& J, const PalmJoints& by, Vector6 e, double* q) {
+  double step[kMaxRobotLinks] = {};
+  bool stuck[kMaxRobotLinks] = {};
+  for (bool again = true; again;) {  // ends: each round one more is stuck
+    again = false;
+    Matrix6 a = Matrix6::Zero();
+    for (int32_t k = 0; k < by.count; ++k)
+      if (!stuck[k]) a += J.col(k) * J.col(k).transpose();
+    a.diagonal().array() += kPalmDamping * kPalmDamping;
+    const Vector6 y = a.llt().solve(e);
+    for (int32_t k = 0; k < by.count && !again; ++k) {
+      if (stuck[k]) continue;
+      step[k] = J.col(k).dot(y);
+      const double from = q[by.joints[k]], to = from + step[k];
+      if (to >= by.low[k] && to <= by.high[k]) continue;
+      step[k] = std::clamp(to, by.low[k], by.high[k]) - from;
+      e -= step[k] * J.col(k);  // the others do the rest
+      stuck[k] = again = true;
+    }
+  }
+  for (int32_t k = 0; k < by.count; ++k) q[by.joints[k]] += step[k];
+}
+
+// A turn by |w| rad about w.
+Quat rotation_of(const Vec3& w) {
+  const double angle = norm(w);
+  return angle > 0 ? axis_angle((1 / angle) * w, angle) : Quat{};
 }
 
 }  // namespace
@@ -129,6 +165,37 @@ bool solve_reach(const Robot& robot, const Pose& X_RF, double* q) {
       q[i] = std::clamp(q[i] + share * step[i], robot.links[i].lower, robot.links[i].upper);
   }
   return false;
+}
+
+void move_palm(const Robot& robot, const PalmJoints& by, const Vec3& dp, const Vec3& dw, double* q) {
+  constexpr int kSteps = 4;
+  double begin[kMaxRobotLinks];
+  for (int32_t k = 0; k < by.count; ++k) begin[k] = q[by.joints[k]];
+  Pose goal;
+  for (int n = 0; n < kSteps; ++n) {
+    Pose X_RL[kMaxRobotLinks];
+    link_poses(robot, q, X_RL);
+    const Pose X_RP = (robot.palm < 0 ? Pose{} : X_RL[robot.palm]) * Pose{robot.p_hold, {}};
+    if (n == 0) goal = {X_RP.p + dp, rotation_of(dw) * X_RP.q};
+    const Vec3 p = goal.p - X_RP.p, w = turn_between(goal.q, X_RP.q);
+    Vector6 e;
+    e << p.x, p.y, p.z, w.x, w.y, w.z;
+    if (e.squaredNorm() < kClose * kClose) break;
+    Jacobian J;
+    J.leftCols(by.count).setZero();
+    for (int32_t i = robot.palm; i >= 0; i = robot.links[i].parent)
+      for (int32_t k = 0; k < by.count; ++k)
+        if (by.joints[k] == i) J.col(k) = twist_of(robot.links[i], X_RL[i], X_RP.p);
+    damped_step(J, by, e, q);
+  }
+  double share = 1;
+  for (int32_t k = 0; k < by.count; ++k)
+    if (const double way = std::fabs(q[by.joints[k]] - begin[k]); way > by.most[k])
+      share = std::min(share, by.most[k] / way);
+  for (int32_t k = 0; k < by.count; ++k) {
+    double& x = q[by.joints[k]];
+    x = begin[k] + share * (x - begin[k]);
+  }
 }
 
 double arm_length(const Robot& robot) {

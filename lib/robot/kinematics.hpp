@@ -27,6 +27,20 @@ Pose palm_frame(const Robot& robot, const double* q);
 // False when it ends more than 1e-6 m or rad off; then q is where it ended.
 bool solve_reach(const Robot& robot, const Pose& X_RF, double* q);
 
+// Moves the palm's frame by dp (m) and dw (rad, a rotation vector), both in the root frame, by joints of the links before the
+// palm. Up to four damped steps
+//   dq = J' (J J' + kPalmDamping^2 1)^-1 e
+// go to the pose that this asks for; those that would leave [low, high] stay at the bound, and others do their part. No joint
+// goes further than `most` in all: then all go less far. So does the palm near a singular pose and at limits. q [links], rad
+// (m), is changed.
+struct PalmJoints {
+  const int32_t* joints;  // [count] links
+  const double *low, *high, *most;
+  int32_t count;
+};
+inline constexpr double kPalmDamping = 0.02;
+void move_palm(const Robot& robot, const PalmJoints& by, const Vec3& dp, const Vec3& dw, double* q);
+
 // Length of the arm, stretched, from the first joint's axis to the flange, m: an upper bound of its reach.
 double arm_length(const Robot& robot);
 

@@ -77,7 +77,7 @@ class Grasp final : public SingleHand {
     else
       hands().hold_arms(initial_mean_);
     if (options_.initial_mean == Mean::kClose && closed().count > 0)
-      std::copy(closed().begin() + hand().arm_actions, closed().end(), initial_mean_ + hand().arm_actions);
+      std::copy(closed().begin() + hand().arm_actions, closed().end(), initial_mean_ + hand().arm_entries());
     const Robot& robot = *hand().robot;
     const RobotFinger& first = robot.fingers[0];
     for (int32_t i = 0; i < hand().num_actions; ++i) {

@@ -6,6 +6,7 @@
 
 #include "env/options/simulation.hpp"
 #include "physics/gravity_torques.hpp"
+#include "robot/kinematics.hpp"
 #include "tasks/state_check.hpp"
 
 namespace rdm {
@@ -21,10 +22,15 @@ constexpr auto kRows = option_rows<HandOptions>(
     row<&HandOptions::sensor, true, false>(
         text_option("sensor", "contact", "contact|none",
                     "forces of fingertips in the observation: contact forces, or 0")),
-    row<&HandOptions::control, HandDrive::kPosition, HandDrive::kVelocity, HandDrive::kTorque>(
-        basic(text_option("control", "position", "position|velocity|torque",
-                          "meaning of a joint's action entry: its target, the velocity of its target, or a "
-                          "share of its effort"))),
+    row<&HandOptions::control, HandDrive::kPosition, HandDrive::kVelocity, HandDrive::kTorque,
+        HandDrive::kPalm>(basic(
+        text_option("control", "position", "position|velocity|torque|ik",
+                    "a joint's action entry: its target, its target's velocity or a share of its effort; "
+                    "ik: arms by their palms"))),
+    row<&HandOptions::ik_speed>(number_option(
+        "ik_speed", 0.5, 0.001, 10, "speed of a palm by an action entry of 1 with control=ik, m/s")),
+    row<&HandOptions::ik_spin>(number_option(
+        "ik_spin", 2, 0.001, 100, "angular speed of a palm by an action entry of 1 with control=ik, rad/s")),
     row<&HandOptions::arm_range>(number_option(
         "arm_range", 0.3, 0, 10,
         "angle from the start that an entry of 1 gives to an arm's joint, rad; 0: its whole range")),
@@ -176,6 +182,7 @@ HandControl::HandControl(const HandControlConfig& config, const Options& o, cons
     torque_ = kSourceStep * 1e3 * base_.orientation_scale;
   }
   size_t at = 0;
+  bool any_led = false;
   for (int32_t i = 0; i < count_; ++i) {
     const Robot& robot = hands[i].robot();
     Hand& h = hands_[i] = find_hand(robot, scene, i);
@@ -192,16 +199,24 @@ HandControl::HandControl(const HandControlConfig& config, const Options& o, cons
         h.act_lower[k] = std::max(h.act_lower[k], middle - range);
         h.act_upper[k] = std::min(h.act_upper[k], middle + range);
       }
-    first_entry_[i + 1] = first_entry_[i] + h.num_actions + (flying_[i] ? kBaseActions : 0);
+    h.led = options_.control == HandDrive::kPalm && h.arm_actions > 0;
+    q_WR_[i] = (hands[i].X_WB * robot.X_BR).q;
+    first_entry_[i + 1] = first_entry_[i] + h.num_entries() + (flying_[i] ? kBaseActions : 0);
     first_command_[i + 1] = first_command_[i] + h.num_actions;
     const char* format = !flying_[i]         ? "%s%s %sjoints"
                          : base_.paper_order ? "%s%s %sjoints, force, torque"
                                              : "%s%s %sforce, torque, joints";
     at += static_cast<size_t>(std::snprintf(order_ + at, sizeof order_ - at, format, i > 0 ? ", " : "",
-                                            kSideNames[i], hands[i].armed ? "arm, " : ""));
+                                            kSideNames[i],
+                                            h.led            ? "palm velocity, palm angular velocity, "
+                                            : hands[i].armed ? "arm, "
+                                                             : ""));
+    any_led = any_led || h.led;
     if (!hands[i].own || hands[i].armed)  // alike in numbers, but another robot
       at += static_cast<size_t>(std::snprintf(order_ + at, sizeof order_ - at, " of %s", robot.name));
   }
+  if (options_.control == HandDrive::kPalm && !any_led)
+    fail(Code::kUnsupported, "option control=ik moves hands by their arms: no hand is on one; set arm=NAME");
 }
 
 void HandControl::begin_at(int32_t i, int32_t joint, double q, double low, double high) {
@@ -248,13 +263,35 @@ void HandControl::reset(double noise, bool literal, World& world, const HandCont
     }
 }
 
+// The arm's commands after the entries of its palm: the commanded palm goes on from where it was commanded to.
+void HandControl::lead_arm(const World& world, int32_t i, const float* a, double* command) const {
+  const Hand& h = hands_[i];
+  const double dt = world.scene().control_dt();
+  const auto in_root = [&](const float* entry, double most) {
+    return rotate(conjugate(q_WR_[i]),
+                  (most * dt) * Vec3{static_cast<double>(entry[0]), static_cast<double>(entry[1]),
+                                     static_cast<double>(entry[2])});
+  };
+  double q[kMaxHandJoints];
+  int32_t joints[kMaxHandJoints];
+  std::copy_n(world.q() + h.first, h.num_joints, q);
+  for (int32_t k = 0; k < h.num_actions; ++k) {
+    joints[k] = h.joint(k);
+    q[joints[k]] = h.angle(k, command[k]);
+  }
+  const PalmJoints arm = {joints, h.act_lower, h.act_upper, h.rate, h.arm_actions};
+  move_palm(*h.robot, arm, in_root(a, options_.ik_speed), in_root(a + 3, options_.ik_spin), q);
+  for (int32_t k = 0; k < h.arm_actions; ++k) command[k] = std::clamp(h.command(k, q[joints[k]]), -1.0, 1.0);
+}
+
 // The commands of hand i after its action entries.
 void HandControl::move_commands(const World& world, int32_t i, const float* a, double* command) const {
   const Hand& h = hands_[i];
-  if (options_.control == HandDrive::kPosition) {
-    for (int32_t k = 0; k < h.num_actions; ++k)
-      command[k] =
-          options_.action_average * static_cast<double>(a[k]) + (1 - options_.action_average) * command[k];
+  if (options_.control == HandDrive::kPosition || options_.control == HandDrive::kPalm) {
+    for (int32_t k = h.led ? h.arm_actions : 0; k < h.num_actions; ++k)
+      command[k] = options_.action_average * static_cast<double>(a[h.entry(k)]) +
+                   (1 - options_.action_average) * command[k];
+    if (h.led) lead_arm(world, i, a, command);
     return;
   }
   const double dt = world.scene().control_dt();
@@ -349,20 +386,20 @@ float* HandControl::write(const World& world, const float* action, float* out) c
 
 void HandControl::hold(float* action) const {
   std::fill_n(action, action_dim(), 0.0f);
-  if (options_.control != HandDrive::kPosition) return;
+  if (options_.control == HandDrive::kVelocity || options_.control == HandDrive::kTorque) return;
   for (int32_t i = 0; i < count_; ++i)
-    for (int32_t k = 0; k < hands_[i].num_actions; ++k) {
+    for (int32_t k = hands_[i].led ? hands_[i].arm_actions : 0; k < hands_[i].num_actions; ++k) {
       const Hand& h = hands_[i];
       const double q = std::clamp(start_[i].q[h.joint(k)], h.act_lower[k], h.act_upper[k]);
-      action[joint_entries(i) + k] = static_cast<float>(h.command(k, q));
+      action[entry(i, k)] = static_cast<float>(h.command(k, q));
     }
 }
 
 void HandControl::hold_arms(float* action) const {
   hold(action);
   for (int32_t i = 0; i < count_; ++i)
-    std::fill_n(action + joint_entries(i) + hands_[i].arm_actions,
-                hands_[i].num_actions - hands_[i].arm_actions, 0.0f);
+    std::fill_n(action + joint_entries(i) + hands_[i].arm_entries(),
+                hands_[i].num_entries() - hands_[i].arm_entries(), 0.0f);
 }
 
 }  // namespace rdm

@@ -5,7 +5,10 @@
 // command; the drive's target is lower + (c_i + 1)/2 (upper - lower), reached no faster than the robot's
 // table says. Option control has two other meanings: velocity, where a moves the command at up to the joint's
 // velocity, and torque, where it is a share of the joint's effort and drives only damp. An arm's joints come
-// before the hand's; their range is arm_range about the start. The six base entries of a flying hand are a
+// before the hand's; their range is arm_range about the start. With control ik six entries stand instead of
+// them, which move the palm's frame in world axes: its velocity, ik_speed a, and angular velocity, ik_spin a;
+// the arm's commands follow by damped least squares (robot/kinematics.hpp) from where they are, so that
+// nothing drifts while the entries are 0. The six base entries of a flying hand are a
 // force and a torque in world axes, a * scale; a base flies through a medium: its speed ends at force /
 // (base_damping m).
 #pragma once
@@ -19,8 +22,9 @@ namespace rdm {
 
 inline constexpr int kMaxHandActions = kMaxHands * (kMaxHandJoints + kBaseActions);
 
-// What an action entry of a joint is: its target, the target's velocity, or a share of its effort.
-enum class HandDrive { kPosition, kVelocity, kTorque };
+// What an action entry of a joint is: its target, the target's velocity, or a share of its effort; kPalm: the
+// target, but arms are moved by their palms.
+enum class HandDrive { kPosition, kVelocity, kTorque, kPalm };
 // Of arms; hands feel none.
 enum class ArmGravity { kCompensated, kFree, kOff };
 
@@ -30,6 +34,7 @@ struct HandOptions {
   bool sensor;  // fingertips feel contact forces
   HandDrive control;
   double arm_range, arm_noise;  // rad
+  double ik_speed, ik_spin;     // m/s, rad/s of a palm by an entry of 1
   ArmGravity arm_gravity;
   DrawnOption friction_object, friction_self, friction_ground;
 };
@@ -101,13 +106,18 @@ class HandControl {
     return first_entry_[i] + (flying_[i] && !base_.paper_order ? kBaseActions : 0);
   }
   int32_t base_entries(int32_t i) const {
-    return first_entry_[i] + (base_.paper_order ? hands_[i].num_actions : 0);
+    return first_entry_[i] + (base_.paper_order ? hands_[i].num_entries() : 0);
+  }
+  // Entry of the action row for a command of hand i; -1: none, or the command is -1.
+  int32_t entry(int32_t i, int32_t command) const {
+    const int32_t at = command < 0 ? -1 : hands_[i].entry(command);
+    return at < 0 ? -1 : joint_entries(i) + at;
   }
   // Entry of the action row for a joint of the scene; -1: none.
   int32_t action_of(int32_t joint) const {
     for (int32_t i = 0; i < count_; ++i)
       for (int32_t k = 0; k < hands_[i].num_actions; ++k)
-        if (hands_[i].actuated[k] == joint) return joint_entries(i) + k;
+        if (hands_[i].actuated[k] == joint) return entry(i, k);
     return -1;
   }
   // Where hand i's joint is at the start, rad.
@@ -142,6 +152,7 @@ class HandControl {
   void slow_base(World& world, int32_t articulation) const;
   void feed_forward(World& world, int32_t i, const float* action) const;
   void move_commands(const World& world, int32_t i, const float* action, double* command) const;
+  void lead_arm(const World& world, int32_t i, const float* action, double* command) const;
 
   int32_t count_;
   HandOptions options_;
@@ -158,6 +169,7 @@ class HandControl {
   Start start_[kMaxHands];  // [num_joints] rad; between which angles a reset draws it
   Hand hands_[kMaxHands];
   Vec3 bases_[kMaxHands];
+  Quat q_WR_[kMaxHands];  // of the robots' roots
 };
 
 }  // namespace rdm

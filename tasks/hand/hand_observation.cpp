@@ -66,7 +66,7 @@ void add_tip_fields(const Hand& hand, FieldTable& table, const char* prefix) {
 }
 
 void add_action_field(const Hand& hand, FieldTable& table, const char* prefix, bool base) {
-  add_field(table, prefix, "action", "1", hand.num_actions + (base ? kBaseActions : 0), -1, 1);
+  add_field(table, prefix, "action", "1", hand.num_entries() + (base ? kBaseActions : 0), -1, 1);
 }
 
 void add_hand_fields(const Hand& hand, FieldTable& table, const char* prefix, bool base) {
@@ -118,7 +118,7 @@ float* write_tips(const HandView& view, float* out) {
 }
 
 float* write_action(const HandView& view, float* out) {
-  return std::copy_n(view.action, view.hand.num_actions + (view.base ? kBaseActions : 0), out);
+  return std::copy_n(view.action, view.hand.num_entries() + (view.base ? kBaseActions : 0), out);
 }
 
 float* write_hand(const HandView& view, float* out) {

@@ -15,7 +15,7 @@ inline constexpr int kBaseActions = 6;  // entries of a flying base: force, torq
 struct HandView {
   const World& world;
   const Hand& hand;
-  const float* action;           // [num_actions], with a base [num_actions + 6]: previous action
+  const float* action;           // [num_entries], with a base [num_entries + 6]: previous action
   bool sensor = true;            // false: fingertip forces read 0
   const Motion* base = nullptr;  // null: fixed, and not observed
   bool signed_angles = false;    // base angles in [-pi, pi] instead of [0, 2 pi)

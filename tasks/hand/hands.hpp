@@ -16,6 +16,7 @@ namespace rdm {
 
 // Room for a hand; find_hand refuses a robot with more.
 inline constexpr int kMaxHandJoints = kMaxRobotLinks, kMaxHandTips = 8;
+inline constexpr int kPalmActions = 6;  // entries that move a palm: velocity, angular velocity
 
 // Rows of the pair friction table; a task's further ones begin with kOwnMaterial.
 enum Material : int32_t { kRightHand = 0, kLeftHand, kObject, kGround, kOwnMaterial };
@@ -27,7 +28,8 @@ struct Hand {
   int32_t first = 0;  // flat index of its first joint; the others follow
   int32_t num_joints = 0, num_actions = 0, num_tips = 0;
   int32_t arm_joints = 0, arm_actions = 0;  // those of its arm, which come first
-  int32_t actuated[kMaxHandJoints] = {};    // [num_actions] flat joint of each action entry
+  bool led = false;                         // its arm by its palm: six entries instead of the arm's own
+  int32_t actuated[kMaxHandJoints] = {};    // [num_actions] flat joint of each command
   int32_t tips[kMaxHandTips] = {};          // [num_tips] flat link, in the order of the robot's fingers
   int32_t sensors[kMaxHandTips] = {};       // [num_tips] index of Scene::sensors
   // Ranges of its joints, rad; copied together, as all below, because every step reads them. [num_joints]
@@ -44,9 +46,16 @@ struct Hand {
   int32_t num_curves = 0;
   double torque_scale = 10;  // of joint forces in the observation, 1/(N m)
 
-  // Joint of an action entry, counted within the hand.
+  // Joint of a command, counted within the hand.
   int32_t joint(int32_t action) const { return actuated[action] - first; }
   int32_t hand_joints() const { return num_joints - arm_joints; }
+  // Entries of the action row: those of the arm or the palm, then those of the hand's joints.
+  int32_t arm_entries() const { return led ? kPalmActions : arm_actions; }
+  int32_t num_entries() const { return num_actions - arm_actions + arm_entries(); }
+  // That of a command; -1: the arm's follow the palm.
+  int32_t entry(int32_t command) const {
+    return command >= arm_actions ? command - arm_actions + arm_entries() : led ? -1 : command;
+  }
   // The command for which an entry's drive goes to q, and back.
   double command(int32_t action, double q) const;
   double angle(int32_t action, double command) const;

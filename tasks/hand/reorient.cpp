@@ -103,7 +103,7 @@ class Reorient final : public SingleHand {
     TurnState& s = *static_cast<TurnState*>(step.state);
     const double theta = turn_left(step.world, s);
     double squares = 0;
-    for (int i = 0; i < hand().num_actions; ++i)
+    for (int i = 0; i < hand().num_entries(); ++i)
       squares += static_cast<double>(step.action[i]) * static_cast<double>(step.action[i]);
     v->reward = reorient_reward(theta, squares, options_.action_price, options_.success_bonus,
                                 options_.success_angle) +

@@ -219,7 +219,7 @@ Vector<EntryGuard> safety_guards(const SafetyCosts& c, const HandControl& hands)
     for (int i = 0; i < kNumWindows; ++i) {
       const JointWindow& w = c.windows[i];
       if (w.act < 0 || !(all || c.counts[i])) continue;
-      keep(all ? kFf2Range + i : kCost, hands.joint_entries(0) + w.act, w.command_low, w.command_high);
+      keep(all ? kFf2Range + i : kCost, hands.entry(0, w.act), w.command_low, w.command_high);
     }
   };
   if (!base) windows(false);

@@ -42,9 +42,8 @@ float straight(const Hand& hand, int32_t link) {
 void flat_hand_mean(const HandControl& hands, FirstFinger first, float* mean) {
   constexpr float kBent = -0.4f;
   const Robot& robot = *hands.hand(0).robot;
-  float* right = mean + hands.joint_entries(0);
   const auto command = [&](int32_t link, float value) {
-    if (const int32_t entry = robot.action_of(link); entry >= 0) right[entry] = value;
+    if (const int32_t entry = hands.entry(0, robot.action_of(link)); entry >= 0) mean[entry] = value;
   };
   for (int32_t f = 0; f < robot.fingers.count; ++f) {
     const RobotFinger& finger = robot.fingers[f];
@@ -58,8 +57,8 @@ void flat_hand_mean(const HandControl& hands, FirstFinger first, float* mean) {
     for (const int32_t link : {finger.proximal, finger.middle}) command(link, kBent);
   if (first == FirstFinger::kStart)
     for (const int32_t link : {finger.lateral, finger.proximal, finger.middle})
-      if (const int32_t entry = robot.action_of(link); entry >= 0)
-        right[entry] = static_cast<float>(hands.hand(0).command(entry, hands.start(0, link)));
+      if (const int32_t k = robot.action_of(link); k >= 0)
+        command(link, static_cast<float>(hands.hand(0).command(k, hands.start(0, link))));
 }
 
 void flat_throw_mean(const HandControl& hands, FirstFinger first, float* mean) {
@@ -67,11 +66,10 @@ void flat_throw_mean(const HandControl& hands, FirstFinger first, float* mean) {
   flat_hand_mean(hands, first, mean);
   for (int32_t i = 0; i < hands.count(); ++i) {
     const Robot& robot = *hands.hand(i).robot;
-    const int32_t flex = robot.action_of(robot.wrist_flexion()),
-                  side = robot.action_of(robot.wrist_deviation());
-    float* hand = mean + hands.joint_entries(i);
-    if (side >= 0) hand[side] = kWristSide;
-    if (flex >= 0) hand[flex] = kWristFlex;
+    const int32_t flex = hands.entry(i, robot.action_of(robot.wrist_flexion())),
+                  side = hands.entry(i, robot.action_of(robot.wrist_deviation()));
+    if (side >= 0) mean[side] = kWristSide;
+    if (flex >= 0) mean[flex] = kWristFlex;
   }
 }
 
