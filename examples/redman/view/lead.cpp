@@ -1,19 +1,18 @@
 #include "view/lead.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
 namespace tool {
 namespace {
 
-constexpr double kProbe = 1e-4;      // rad (m), by which a joint is moved
-constexpr double kMostWay = 0.03;    // m, of a step
-constexpr double kDamping = 0.02;    // m/rad
-constexpr double kMostChange = 0.1;  // of an entry of the action, in a step
-
-using Column = std::array<double, 3>;
+constexpr double kAhead = 0.1;       // s, that is looked ahead
+constexpr double kProbe = 0.1;       // of an entry of the action
+constexpr double kLeast = 1e-3;      // m for a whole entry: what moves the point less does not move it
+constexpr double kMostWay = 0.03;    // m, in the time that is looked ahead
+constexpr double kDamping = 0.01;    // m for a whole entry
+constexpr double kMostChange = 0.2;  // of an entry of the action, in a step
 
 // x of (A A^T + d^2) x = e, for columns A; by Cramer's rule.
 Column solved(const std::vector<Column>& columns, const Column& e) {
@@ -49,8 +48,7 @@ void point_of(const rdm_pose& pose, const double v[3], double out[3]) {
   out[2] = pose.p[2] + v[2] + q[3] * t[2] + q[0] * t[1] - q[1] * t[0];
 }
 
-bool Lead::bring(const redman::Pool& pool, int32_t world, int32_t shape, const double local[3],
-                 const double to[3], float* action) {
+redman::Pool& Lead::copy(const redman::Pool& pool, int32_t world) {
   if (!copy_) {
     PoolSettings one = settings_;
     one.envs = 1;
@@ -59,51 +57,74 @@ bool Lead::bring(const redman::Pool& pool, int32_t world, int32_t shape, const d
     copy_->reset();
   }
   redman::check(rdm_pool_copy(copy_->get(), 0, pool.get(), world));
-  const auto where = [&] {
-    Column at;
-    point_of(copy_->poses()[static_cast<size_t>(shape)], local, at.data());
-    return at;
-  };
+  return *copy_;
+}
+
+Column Lead::where(const Point& point) const {
+  Column at;
+  point_of(copy_->poses()[static_cast<size_t>(point.shape)], point.local, at.data());
+  return at;
+}
+
+Column Lead::after(const redman::Pool& pool, const Point& point, const float* action) {
+  redman::Pool& c = copy(pool, point.world);
+  const auto steps = static_cast<int>(std::ceil(kAhead / pool.spec().control_dt - 1e-9));
+  for (int t = 0; t < steps && !c.terminated()[0] && !c.truncated()[0]; ++t) {
+    std::copy_n(action, pool.spec().action_dim, c.action()[0].begin());
+    c.step();
+  }
+  return where(point);
+}
+
+// Whether some joint moves it: things that lie about are pulled, not led.
+bool Lead::is_of_robot(const redman::Pool& pool, const Point& point) {
+  redman::Pool& c = copy(pool, point.world);
+  std::vector<double> q = c.joint_positions();
+  std::vector<rdm_joint_info> joints;
+  for (int32_t i = 0; i < pool.spec().num_joints; ++i) joints.push_back(pool.joint(i));
+  for (size_t i = 0; i < q.size(); ++i) {
+    q[i] = std::clamp(q[i], joints[i].lower, joints[i].upper);
+    // coupled joints follow the one that leads them
+    if (joints[i].action < 0 && joints[i].kp == 0) q[i] = std::numeric_limits<double>::quiet_NaN();
+  }
+  c.set_joints(0, q);
+  const Column before = where(point);
+  for (double& x : q) x += 1e-3;
+  c.set_joints(0, q);
+  const Column now = where(point);
+  return std::hypot(now[0] - before[0], now[1] - before[1], now[2] - before[2]) > 1e-6;
+}
+
+bool Lead::bring(const redman::Pool& pool, const Point& point, const double to[3], float* action) {
+  if (!is_of_robot(pool, point)) return false;
+  const Column start = after(pool, point, action);
   Column way;
-  const Column start = where();
   for (size_t k = 0; k < 3; ++k) way[k] = to[k] - start[k];
   const double length = std::hypot(way[0], way[1], way[2]),
                share = std::min(1.0, kMostWay / std::max(length, 1e-9));
   for (double& w : way) w *= share;
 
-  // coupled joints follow the one that leads them
-  std::vector<double> q = copy_->joint_positions();
-  std::vector<rdm_joint_info> joints;
-  for (int32_t i = 0; i < pool.spec().num_joints; ++i) joints.push_back(pool.joint(i));
-  for (size_t i = 0; i < q.size(); ++i) {
-    q[i] = std::clamp(q[i], joints[i].lower, joints[i].upper);
-    if (joints[i].action < 0 && joints[i].kp == 0) q[i] = std::numeric_limits<double>::quiet_NaN();
-  }
-  copy_->set_joints(0, q);
-  const Column base = where();
+  std::vector<float> tried(action, action + pool.spec().action_dim);
   std::vector<Column> columns;
   std::vector<size_t> moved;
-  for (size_t i = 0; i < q.size(); ++i) {
-    if (joints[i].action < 0 || joints[i].action >= pool.spec().action_dim) continue;
-    const double before = q[i], by = before + kProbe > joints[i].upper ? -kProbe : kProbe;
-    q[i] += by;
-    copy_->set_joints(0, q);
-    const Column there = where();
-    q[i] = before;
+  for (size_t e = 0; e < tried.size(); ++e) {
+    const float by = static_cast<float>(action[e] + kProbe > 1 ? -kProbe : kProbe);
+    tried[e] = action[e] + by;
+    const Column there = after(pool, point, tried.data());
+    tried[e] = action[e];
     Column c;
-    for (size_t k = 0; k < 3; ++k) c[k] = (there[k] - base[k]) / by;
-    if (std::hypot(c[0], c[1], c[2]) < 1e-6) continue;
+    for (size_t k = 0; k < 3; ++k) c[k] = (there[k] - start[k]) / static_cast<double>(by);
+    if (std::hypot(c[0], c[1], c[2]) < kLeast) continue;
     columns.push_back(c);
-    moved.push_back(i);
+    moved.push_back(e);
   }
   if (columns.empty()) return false;
   const Column x = solved(columns, way);
   for (size_t n = 0; n < columns.size(); ++n) {
-    const rdm_joint_info& j = joints[moved[n]];
-    const double turn = columns[n][0] * x[0] + columns[n][1] * x[1] + columns[n][2] * x[2];
-    const double change = std::clamp(2 * turn / std::max(j.upper - j.lower, 1e-6), -kMostChange, kMostChange);
-    float& a = action[j.action];
-    a = static_cast<float>(std::clamp(static_cast<double>(a) + change, -1.0, 1.0));
+    const double change = columns[n][0] * x[0] + columns[n][1] * x[1] + columns[n][2] * x[2];
+    float& a = action[moved[n]];
+    a = static_cast<float>(
+        std::clamp(static_cast<double>(a) + std::clamp(change, -kMostChange, kMostChange), -1.0, 1.0));
   }
   return true;
 }

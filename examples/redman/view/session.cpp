@@ -178,10 +178,10 @@ void Session::push() {
 void Session::lead() {
   const Grab& g = *grab_;
   take_over(true);
-  if (!lead_->bring(*pool_, g.world, g.shape, g.local, g.to, own_.data())) {
+  if (!lead_->bring(*pool_, {g.world, g.shape, g.local}, g.to, own_.data())) {
     const std::string name = looks_.bodies[static_cast<size_t>(g.shape)].name;
     grab_.reset();
-    throw Usage(name + ": no joint that the action drives moves it; pull it instead");
+    throw Usage(name + ": no entry of the action moves it; pull it instead");
   }
 }
 
