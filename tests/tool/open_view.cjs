@@ -1,76 +1,12 @@
 // open_view.cjs TOOL PICTURES: `redman view` in headless Chromium, by the pointer, keys and buttons: steps, going back to the
 // byte, pulling and leading, sliders, a recording, several worlds. Pages of others get nothing, even with the address.
 'use strict';
-const { spawn } = require('child_process');
 const fs = require('fs'), http = require('http'), path = require('path');
 const { open, colours } = require('./browse.cjs');
+const { view: begin, window_, expect, wait, children } = require('./view_page.cjs');
 const [tool, pictures] = process.argv.slice(2);
-const wait = ms => new Promise(r => setTimeout(r, ms));
-function expect(good, text) {
-  if (good) return;
-  console.log(text);
-  process.exitCode = 1;
-}
-
-// The command, its address, and what it prints in the end.
-const children = [];
-async function view(...words) {
-  const child = spawn(tool, ['view', '--json', ...words], { stdio: ['ignore', 'pipe', 'pipe'] });
-  children.push(child);
-  let out = '', err = '';
-  child.stdout.on('data', d => { out += d; });
-  child.stderr.on('data', d => { err += d; });
-  const gone = new Promise(r => child.on('exit', r));
-  for (let i = 0; i < 600 && !/\n/.test(err) && child.exitCode === null; ++i) await wait(50);
-  const address = (/http:\S+/.exec(err) || [])[0];
-  if (!address) throw new Error('view: ' + err);
-  return {
-    address,
-    async end() {
-      child.kill('SIGINT');
-      expect(await gone === 0, `view ends with ${child.exitCode} ${child.signalCode}: ${err}`);
-      return JSON.parse(out);
-    },
-  };
-}
-
-async function window_(address, { width = 900, height = 600 } = {}) {
-  const page = await open(address, { width, height });
-  await page.ask('redman.ready');
-  const mouse = (type, x, y) => page.call('Input.dispatchMouseEvent', { type, x, y, button: 'left', buttons: type === 'mouseReleased' ? 0 : 1, clickCount: 1 });
-  const middle = selector => page.ask(`(() => { const r = document.querySelector('${selector}').getBoundingClientRect(); return [r.left + r.width / 2, r.top + r.height / 2, r.left, r.width]; })()`);
-  const until = async (condition, text) => {
-    for (let i = 0; i < 1200; ++i) {
-      if (await page.ask(`!!(redman.state && (${condition}))`)) return;
-      await wait(50);
-    }
-    throw new Error(`${text}: ${await page.ask('JSON.stringify({ ...redman.state, rows: 0, action: 0, values: 0 })')} ${page.problems}`);
-  };
-  await until('true', 'no frame comes');
-  return {
-    page, mouse, middle, until,
-    ask: page.ask,
-    state: key => page.ask('redman.state.' + key),
-    told: what => page.ask(`redman.ask(${JSON.stringify(what)})`),
-    hash: async () => (await page.ask(`redman.ask({ do: 'hash' })`)).hash,
-    async click(selector) {
-      const [x, y] = await middle(selector);
-      await mouse('mousePressed', x, y);
-      await mouse('mouseReleased', x, y);
-    },
-    async key(key, type) {
-      await page.call('Input.dispatchKeyEvent', { type, key, text: type === 'keyDown' && key.length === 1 ? key : undefined });
-    },
-    async picture(name) {
-      await page.drawn();
-      await page.picture(path.join(pictures, name));
-    },
-    async end() {
-      expect(page.problems.length === 0, `problems: ${page.problems}`);
-      await page.close();
-    },
-  };
-}
+const view = (...words) => begin(tool, ...words);
+const shot = name => path.join(pictures, name);
 
 async function hands() {
   const file = path.join(pictures, 'by_hand.npz');
@@ -134,7 +70,7 @@ async function hands() {
     await w.until('redman.state.step[0] === 8 && redman.state.force > 0', 'nothing is pulled');
     await w.page.drawn();
     const pulled = await w.ask(`redman.position('object')`);
-    await w.picture('pull.png');
+    await w.picture(shot('pull.png'));
     await w.mouse('mouseReleased', egg.x - 20, egg.y - 120);
     expect(pulled[2] > still[2] + 0.02, `the object is at ${pulled}, left alone at ${still}`);
     await go(1);
@@ -148,7 +84,7 @@ async function hands() {
     await w.ask(`(() => { const s = document.getElementById('picture'); s.value = 'right_palm'; s.onchange({ target: s }); })()`);
     for (let i = 0; i < 200 && !(await w.ask(`document.getElementById('inset').naturalWidth`)); ++i) await wait(50);
     expect(await w.ask(`document.getElementById('inset').naturalWidth`) === 320, 'no picture by the palm\'s camera');
-    await w.picture('contacts.png');
+    await w.picture(shot('contacts.png'));
     await w.ask(`(() => { const s = document.getElementById('picture'); s.value = ''; s.onchange({ target: s }); })()`);
 
     // by hand: a finger that is led, a slider, keys, a gamepad
@@ -212,12 +148,12 @@ async function several() {
     await w.told({ do: 'play', on: false });
     await w.told({ do: 'watch', world: 3 });
     await w.until('redman.state.watched === 3 && redman.state.points === 512', 'no cloud of another world');
-    await w.picture('all.png');
+    await w.picture(shot('all.png'));
     await w.ask(`redman.look('close')`);
     expect((await w.ask(colours)).count > 50, 'the scene shows few colours');
     const row = await w.ask('redman.curve.at.length');
     expect(row === await w.state('at') - await w.state('first') + 1, `${row} rows of curves of another world`);
-    await w.picture('several.png');
+    await w.picture(shot('several.png'));
   } finally {
     await w.end();
     await program.end();

@@ -4,7 +4,16 @@
 #include <cerrno>
 #include <cstddef>
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__GLIBC__)
+// A sanitizer has an allocator of its own. GCC says by a macro that there is one, clang by a feature.
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer) || __has_feature(memory_sanitizer)
+#define TOOL_SANITIZED
+#endif
+#elif defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define TOOL_SANITIZED
+#endif
+
+#if defined(TOOL_SANITIZED) || !defined(__GLIBC__)
 
 int64_t tool::allocation_count() {
   return -1;

@@ -7,11 +7,17 @@
 namespace tool {
 namespace {
 
-constexpr double kAhead = 0.1;       // s, that is looked ahead
-constexpr double kProbe = 0.1;       // of an entry of the action
-constexpr double kLeast = 1e-3;      // m for a whole entry: what moves the point less does not move it
-constexpr double kMostWay = 0.03;    // m, in the time that is looked ahead
-constexpr double kDamping = 0.01;    // m for a whole entry
+// How long is looked ahead, s, and how much of an entry is tried. More where nothing moves at first: a finger that presses on a
+// table has targets far below it.
+struct Look {
+  double ahead, probe;
+};
+constexpr Look kLooks[] = {{0.3, 0.1}, {0.6, 1}};
+constexpr double kLeast = 1e-3;    // m for a whole entry: what moves the point less does not move it
+constexpr double kMostWay = 0.03;  // m, in the time that is looked ahead
+constexpr double kDamping = 0.01;  // m for a whole entry
+constexpr double kPosture =
+    0.1;  // of the way of an entry back to that of the hold action, in a step, as far as the point stays
 constexpr double kMostChange = 0.2;  // of an entry of the action, in a step
 
 // x of (A A^T + d^2) x = e, for columns A; by Cramer's rule.
@@ -55,6 +61,8 @@ redman::Pool& Lead::copy(const redman::Pool& pool, int32_t world) {
     one.threads = 0;
     copy_.emplace(make_pool(one, RDM_AUTORESET_OFF));
     copy_->reset();
+    copy_->baseline(RDM_BASELINE_HOLD);
+    hold_.assign(copy_->action()[0].begin(), copy_->action()[0].end());
   }
   redman::check(rdm_pool_copy(copy_->get(), 0, pool.get(), world));
   return *copy_;
@@ -66,12 +74,13 @@ Column Lead::where(const Point& point) const {
   return at;
 }
 
-Column Lead::after(const redman::Pool& pool, const Point& point, const float* action) {
+Column Lead::after(const redman::Pool& pool, const Point& point, double ahead, const float* action) {
   redman::Pool& c = copy(pool, point.world);
-  const auto steps = static_cast<int>(std::ceil(kAhead / pool.spec().control_dt - 1e-9));
-  for (int t = 0; t < steps && !c.terminated()[0] && !c.truncated()[0]; ++t) {
+  const auto steps = static_cast<int>(std::ceil(ahead / pool.spec().control_dt - 1e-9));
+  for (int t = 0; t < steps; ++t) {
     std::copy_n(action, pool.spec().action_dim, c.action()[0].begin());
     c.step();
+    if (c.terminated()[0] || c.truncated()[0]) break;  // it would not go on
   }
   return where(point);
 }
@@ -97,36 +106,46 @@ bool Lead::is_of_robot(const redman::Pool& pool, const Point& point) {
 
 bool Lead::bring(const redman::Pool& pool, const Point& point, const double to[3], float* action) {
   if (!is_of_robot(pool, point)) return false;
-  const Column start = after(pool, point, action);
-  Column way;
-  for (size_t k = 0; k < 3; ++k) way[k] = to[k] - start[k];
-  const double length = std::hypot(way[0], way[1], way[2]),
-               share = std::min(1.0, kMostWay / std::max(length, 1e-9));
-  for (double& w : way) w *= share;
-
   std::vector<float> tried(action, action + pool.spec().action_dim);
-  std::vector<Column> columns;
-  std::vector<size_t> moved;
-  for (size_t e = 0; e < tried.size(); ++e) {
-    const float by = static_cast<float>(action[e] + kProbe > 1 ? -kProbe : kProbe);
-    tried[e] = action[e] + by;
-    const Column there = after(pool, point, tried.data());
-    tried[e] = action[e];
-    Column c;
-    for (size_t k = 0; k < 3; ++k) c[k] = (there[k] - start[k]) / static_cast<double>(by);
-    if (std::hypot(c[0], c[1], c[2]) < kLeast) continue;
-    columns.push_back(c);
-    moved.push_back(e);
+  for (const Look& look : kLooks) {
+    const Column start = after(pool, point, look.ahead, action);
+    std::vector<Column> columns;
+    std::vector<size_t> moved;
+    for (size_t e = 0; e < tried.size(); ++e) {
+      const double by = static_cast<double>(action[e]) > 1 - look.probe ? -look.probe : look.probe;
+      tried[e] = static_cast<float>(std::max(static_cast<double>(action[e]) + by, -1.0));
+      const Column there = after(pool, point, look.ahead, tried.data());
+      const double done = static_cast<double>(tried[e] - action[e]);
+      tried[e] = action[e];
+      Column c;
+      for (size_t k = 0; k < 3; ++k) c[k] = (there[k] - start[k]) / done;
+      if (std::hypot(c[0], c[1], c[2]) < kLeast) continue;
+      columns.push_back(c);
+      moved.push_back(e);
+    }
+    if (columns.empty()) continue;
+    // da = J+ (way - J r) + r: r brings the entries back to the hold action without moving the point. Else what changes step by step
+    // would turn joints on and on.
+    Column way;
+    for (size_t k = 0; k < 3; ++k) way[k] = to[k] - start[k];
+    const double length = std::hypot(way[0], way[1], way[2]),
+                 share = std::min(1.0, kMostWay / std::max(length, 1e-9));
+    std::vector<double> back(columns.size());
+    for (double& w : way) w *= share;
+    for (size_t n = 0; n < columns.size(); ++n) {
+      back[n] = kPosture * static_cast<double>(hold_[moved[n]] - action[moved[n]]);
+      for (size_t k = 0; k < 3; ++k) way[k] -= columns[n][k] * back[n];
+    }
+    const Column x = solved(columns, way);
+    for (size_t n = 0; n < columns.size(); ++n) {
+      const double change = columns[n][0] * x[0] + columns[n][1] * x[1] + columns[n][2] * x[2] + back[n];
+      float& a = action[moved[n]];
+      a = static_cast<float>(
+          std::clamp(static_cast<double>(a) + std::clamp(change, -kMostChange, kMostChange), -1.0, 1.0));
+    }
+    return true;
   }
-  if (columns.empty()) return false;
-  const Column x = solved(columns, way);
-  for (size_t n = 0; n < columns.size(); ++n) {
-    const double change = columns[n][0] * x[0] + columns[n][1] * x[1] + columns[n][2] * x[2];
-    float& a = action[moved[n]];
-    a = static_cast<float>(
-        std::clamp(static_cast<double>(a) + std::clamp(change, -kMostChange, kMostChange), -1.0, 1.0));
-  }
-  return true;
+  return false;
 }
 
 }  // namespace tool

@@ -14,8 +14,7 @@ void point_of(const rdm_pose& pose, const double local[3], double out[3]);
 
 using Column = std::array<double, 3>;
 
-// Damped least squares (Wampler 1986) over the entries of the action. Where the point will be a tenth of a second from now, and
-// how that follows each entry, is found by trying it in a copy of the world: whatever an entry means, and nothing happens in the
+// Damped least squares (Wampler 1986) over the entries of the action. Where the point will be soon, and how that follows each entry, is found by trying it in a copy of the world: whatever an entry means, and nothing happens in the
 // world itself.
 class Lead {
  public:
@@ -32,10 +31,11 @@ class Lead {
   redman::Pool& copy(const redman::Pool& pool, int32_t world);
   bool is_of_robot(const redman::Pool& pool, const Point& point);
   Column where(const Point& point) const;
-  Column after(const redman::Pool& pool, const Point& point, const float* action);
+  Column after(const redman::Pool& pool, const Point& point, double ahead, const float* action);
 
   PoolSettings settings_;
   std::optional<redman::Pool> copy_;  // of one world
+  std::vector<float> hold_;           // the hold action
 };
 
 }  // namespace tool

@@ -284,13 +284,19 @@ function openScene(canvas, model, contacts) {
     return ray.ray.direction.clone().multiplyScalar(far).add(eye);
   }
 
+  // x, y in [-1, 1] of a point.
+  function screen(point) {
+    camera.updateMatrixWorld();
+    return new THREE.Vector3(...point).project(camera).toArray();
+  }
+
   let travel = 0;  // m, of the middle of what moves
   if (tracks.size) {
     const start = middle(0), frames = json.accessors[json.animations[0].samplers[0].input].count;
     for (let k = 0; k < frames; ++k) travel = Math.max(travel, middle(k).distanceTo(start));
   }
   return {
-    show, look, draw, hitAt, pointAt, travel, extent, objects: objects.filter(o => o),
+    show, look, draw, hitAt, pointAt, screen, travel, extent, objects: objects.filter(o => o),
     nameAt(x, y) { const hit = hitAt(x, y); return hit ? hit.name : ''; },
     add(object) { world.add(object); dirty = true; },
     end() {  // browsers give few canvases a context at a time

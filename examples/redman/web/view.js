@@ -344,6 +344,13 @@ const redman = window.redman = {};
   Object.assign(redman, {
     ask, look, take, curve, hand,
     position: name => (view ? view.position(name) : null),
+    // Where a point, m, is in the page, in pixels.
+    pixel(point) {
+      const r = $('view').getBoundingClientRect(), [x, y] = view.screen(point);
+      return { x: r.left + (x + 1) / 2 * r.width, y: r.top + (1 - y) / 2 * r.height };
+    },
+    // Where the point that is held is, m, or null.
+    held: () => (mouse.grabbed ? mouse.grabbed.object.localToWorld(mouse.grabbed.local.clone()).toArray() : null),
     // Where a shape is in the page, in pixels, and what of it can be hit: {name, x, y}, or null.
     movable(wanted) {
       const r = $('view').getBoundingClientRect();
