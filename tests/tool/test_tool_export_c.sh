@@ -132,6 +132,13 @@ cc -std=c99 $strict both.c bare.c state_8.c -o both || say "policies do not live
 cc -std=c99 -Ofast -c tanh.c -o object 2> err && say "-Ofast is taken"
 grep -q 'ffast-math' err || say "-Ofast: $(cat err)"
 
+# the manual's program, by its own line
+"$tool" export --policy tanh --c policy.c --name throw > out || say "$(cat out)"
+awk '/^```c$/ { block = ""; on = 1; next } /^```/ { if (on && block ~ /"policy.c"/) printf "%s", block; on = 0 } on { block = block $0 "\n" }' \
+  "$here/../../examples/manual/memory.md" > host.c
+line=$(grep -o '`cc -std=c99 host.c [^`]*`' "$here/../../examples/manual/memory.md" | tr -d '`')
+$line -Wall -Wextra -pedantic -Werror && ./host > out && [ "$(wc -l < out)" -eq 40 ] || say "the program of memory.md: '$line'"
+
 # names
 "$tool" export --policy tanh --c own.c --json > out && grep -q '"name":"hand_over_safe_finger"' out || say "$(cat out)"
 grep -q 'right.joint_position' own.c || say "the observation's fields are not said"
