@@ -1,5 +1,5 @@
 # What packages carry beside install.cmake: manual, completions, examples, the Python package; and `cpack -G DEB` of
-# preset `package`, which makes libredman<ABI>, libredman-dev, redman and python3-redman.
+# preset `package`, which makes libredman<ABI>, libredman-dev, redman, redman-doc and python3-redman.
 set(REDMAN_PYTHON_DIR "" CACHE STRING "Where below the prefix the Python package goes, \"\": it is not installed")
 set(REDMAN_CONTACT "redman maintainers <maintainers@redman.example>" CACHE STRING "Maintainer in the .deb files")
 if(TARGET manual)
@@ -9,8 +9,7 @@ if(TARGET manual)
   install(FILES ${RDM_MANUAL}/zsh/_redman DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions COMPONENT tools)
   install(FILES ${RDM_MANUAL}/fish/redman.fish COMPONENT tools
           DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d)
-  install(FILES README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT tools)
-  install(DIRECTORY examples/demos DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT tools)
+  install(DIRECTORY examples/demos DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples COMPONENT tools PATTERN README.md EXCLUDE)
 endif()
 if(TARGET redman_tool)
   install(DIRECTORY examples/policies DESTINATION ${CMAKE_INSTALL_DATADIR}/redman COMPONENT tools
@@ -18,6 +17,12 @@ if(TARGET redman_tool)
 endif()
 if(REDMAN_STUBS OR REDMAN_SIM OR REDMAN_LEARN)
   file(GLOB sources CONFIGURE_DEPENDS examples/[0-9]*.c examples/[0-9]*.cpp)
+  # The manual and what its pages link to, with links that lead there: written when it is installed.
+  set(pages ${PROJECT_BINARY_DIR}/pages)
+  file(RELATIVE_PATH headers ${CMAKE_INSTALL_FULL_DOCDIR} ${CMAKE_INSTALL_FULL_INCLUDEDIR})
+  install(CODE "execute_process(COMMAND sh \"${PROJECT_SOURCE_DIR}/cmake/packaging/pages.sh\" \"${PROJECT_SOURCE_DIR}\" \"${pages}\" ${headers}
+                                COMMAND_ERROR_IS_FATAL ANY)" COMPONENT doc)
+  install(DIRECTORY ${pages}/ DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT doc)
 else()  # they call what this build may not have
   set(sources examples/small/act.c examples/small/peak.h)
 endif()
@@ -38,7 +43,7 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
     OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
-set(CPACK_COMPONENTS_ALL runtime dev tools)
+set(CPACK_COMPONENTS_ALL runtime dev tools doc)
 set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${PROJECT_BINARY_DIR})
@@ -70,6 +75,9 @@ package is for those who build programs against it."
 rdm_deb(tools redman science SUMMARY "train, evaluate and look at safe dexterous manipulation" TEXT "${text}\n.\nThis package \
 holds the command-line tool, its manual and\nits scripted demonstrations."
         DEPENDS "${library} (= ${PROJECT_VERSION})")
+set(CPACK_DEBIAN_DOC_PACKAGE_ARCHITECTURE all)
+rdm_deb(doc redman-doc doc SUMMARY "safe dexterous manipulation (manual)" TEXT "${text}\n.\nThis package holds the manual: pages of \
+Markdown in\n/usr/share/doc/redman/manual, with the pictures and results that they show.")
 if(TARGET redman_import)
   set(import libredman-import${RDM_ABI})
   list(APPEND CPACK_COMPONENTS_ALL import)
@@ -81,7 +89,7 @@ holds the library that reads robots: URDF, MJCF\nand redman's own text."
   string(APPEND CPACK_DEBIAN_DEV_PACKAGE_DEPENDS ", ${import} (= ${PROJECT_VERSION}), libtinyxml2-dev")
   file(WRITE ${RDM_DEBIAN}/import/shlibs "libredman_import ${RDM_ABI} ${import} (>= ${PROJECT_VERSION})\n")
 endif()
-set(CPACK_DEBIAN_TOOLS_PACKAGE_SUGGESTS ffmpeg)  # films
+set(CPACK_DEBIAN_TOOLS_PACKAGE_SUGGESTS "ffmpeg, redman-doc")  # films
 if(REDMAN_PYTHON_DIR)
   list(APPEND CPACK_COMPONENTS_ALL python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_ARCHITECTURE all)
@@ -89,6 +97,9 @@ if(REDMAN_PYTHON_DIR)
 the Python module, with environments for\nGymnasium and its like."
           DEPENDS "${library} (>= ${PROJECT_VERSION}), ${library} (<< ${next}~), python3:any (>= 3.9~), python3-numpy"
           CONTROL ${PROJECT_SOURCE_DIR}/cmake/packaging/debian/postinst ${PROJECT_SOURCE_DIR}/cmake/packaging/debian/prerm)
+  if(TARGET redman_import)
+    set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "${import} (>= ${PROJECT_VERSION}), ${import} (<< ${next}~)")  # files of one's own
+  endif()
 endif()
 set(CPACK_DEBIAN_TOOLS_PACKAGE_SHLIBDEPS ON)  # the library's are asked for in finish.cmake: cpack would add scripts
 

@@ -16,6 +16,15 @@ for file in $(find "$prefix" -type f); do
 done
 [ -n "$(find "$prefix" -name 'redman.1')" ] || [ ! -e "$build/manual/man1" ] || wrong "no manual page was installed"
 
+pages=$(find "$prefix" -name manual -type d)
+[ -n "$pages" ] || wrong "no manual was installed"
+# Its links lead to what is there.
+for page in $(find "$pages/.." -name '*.md' -type f); do
+  for target in $(sed '/^```/,/^```/d' "$page" | grep -o '](\([^() ]*\))' | sed 's/^](//; s/)$//; s/#.*//' | grep -v '^[a-z]*:'); do
+    [ -e "$(dirname "$page")/$target" ] || wrong "$page: a link to $target"
+  done
+done
+
 DESTDIR=$prefix.stage "$cmake" --install "$build" --prefix /opt/redman > /dev/null
 [ "$(ls "$prefix.stage")" = opt ] || wrong "DESTDIR holds $(ls "$prefix.stage")"
 (cd "$prefix.stage/opt/redman" && find . ! -type d | sort) > "$prefix.staged"
