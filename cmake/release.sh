@@ -13,7 +13,7 @@ all=$(bash cmake/check.sh --help | awk 'NR > 1 { print $1 }' | grep -vxE 'quick|
 modes=${*:-$all}
 for mode in $modes; do echo "$all" | grep -qxF -- "$mode" || die "check.sh has no mode '$mode'"; done
 commit=$(git rev-parse HEAD) short=$(git rev-parse --short=12 HEAD)
-version=$(sed -n 's/^set(RDM_VERSION_[A-Z]* \([0-9]*\))$/\1/p' CMakeLists.txt | paste -sd.)
+version=$(sed -n 's/^#define RDM_VERSION_[A-Z]* \([0-9]*\)$/\1/p' include/redman/base.h | paste -sd.)
 out=$PWD/build/published/$short files=$PWD/build/published/$short/files copy=$PWD/build/published/tree
 mkdir -p "$files"
 [ -d "$copy/.git" ] || git clone -q . "$copy" || die "cannot copy the tree"

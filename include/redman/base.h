@@ -38,8 +38,8 @@ extern "C" {
 #endif
 
 /* The version of this header; rdm_version() is that of the library. */
-#define RDM_VERSION_MAJOR 0
-#define RDM_VERSION_MINOR 1
+#define RDM_VERSION_MAJOR 1
+#define RDM_VERSION_MINOR 0
 #define RDM_VERSION_PATCH 0
 #define RDM_VERSION (RDM_VERSION_MAJOR * 1000000 + RDM_VERSION_MINOR * 1000 + RDM_VERSION_PATCH)
 #define RDM_ABI 1          /* also the SONAME; changes only when an old binary would break */
@@ -87,7 +87,7 @@ RDM_API rdm_result rdm_check_experimental(uint32_t version);
 typedef struct rdm_build { /* what this library was built from */
   uint32_t struct_size;   /* in: bytes                                              */
   uint32_t abi;           /* RDM_ABI of the library                                 */
-  const char *version;    /* "0.1.0"                                                */
+  const char *version;    /* "1.0.0"                                                */
   const char *ode;        /* version of ODE; "" in a build without simulation       */
   const char *eigen;      /* version of Eigen                                       */
   const char *ccd;        /* version of libccd                                      */

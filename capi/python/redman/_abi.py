@@ -26,8 +26,8 @@ class Function(NamedTuple):
     doc: str
 
 
-RDM_VERSION_MAJOR = 0  # The version of this header; rdm_version() is that of the library.
-RDM_VERSION_MINOR = 1  # The version of this header; rdm_version() is that of the library.
+RDM_VERSION_MAJOR = 1  # The version of this header; rdm_version() is that of the library.
+RDM_VERSION_MINOR = 0  # The version of this header; rdm_version() is that of the library.
 RDM_VERSION_PATCH = 0  # The version of this header; rdm_version() is that of the library.
 RDM_ABI = 1  # also the SONAME; changes only when an old binary would break
 RDM_MAX_COSTS = 16  # cost columns of a task or an agent
@@ -37,7 +37,7 @@ RDM_MAX_LINKS = 64  # links of a robot, at most
 RDM_MAX_KNOTS = 4  # knots of a curve, at most
 RDM_MAX_SHAPES = 64  # most shapes of an object
 RDM_VERSION = RDM_VERSION_MAJOR * 1000000 + RDM_VERSION_MINOR * 1000 + RDM_VERSION_PATCH
-VERSION = "0.1.0"  # that these types are of
+VERSION = "1.0.0"  # that these types are of
 
 
 class ResultCode(enum.IntEnum, metaclass=Members):
@@ -392,7 +392,7 @@ class Build(Record):
     """what this library was built from
 
     abi: the number of the ABI of the library
-    version: "0.1.0"
+    version: "1.0.0"
     ode: version of ODE; "" in a build without simulation
     eigen: version of Eigen
     ccd: version of libccd
@@ -422,7 +422,7 @@ class rdm_build(Structure):
 
     struct_size: in: bytes
     abi: RDM_ABI of the library
-    version: "0.1.0"
+    version: "1.0.0"
     ode: version of ODE; "" in a build without simulation
     eigen: version of Eigen
     ccd: version of libccd
