@@ -31,7 +31,7 @@ physics|the truth table, the bundled policies at other substeps|the engine
 slow|learning and long random runs|before a release
 coverage|which lines no test runs, in build/coverage.txt|before a release
 hard [MINUTES]|tries to break the library, for an hour|before a release
-release|all of the above in a clean copy of the commit, the files to publish, and one page of what passed|a release
+release [MODE...]|all of the above, or those given, in a clean copy of the commit, the files to publish, and one page of what passed|a release
 END
 )
 case $mode in
@@ -91,7 +91,7 @@ if [ "$mode" != quick ] && [ "$mode" != release ]; then
 fi
 case $mode in
   release)
-    exec bash cmake/release.sh
+    exec bash cmake/release.sh "${@:2}"
     ;;
   quick)
     [ -f build/dev/build.ninja ] || configure dev

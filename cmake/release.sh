@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# release.sh [MODE...]: what a release is made of. Runs the modes of check.sh, all of them unless some are given, in a clean copy of the
-# commit, then makes the files to publish, and writes one page: what passed, on which machine, in what time, and the hash of
+# release.sh [MODE...]: what `check.sh release` runs: the modes of check.sh, all of them unless some are given, in a clean copy of
+# the commit. Then it makes the files to publish, and writes one page: what passed, on which machine, in what time, and the hash of
 # each file. It can be stopped and called again: a mode that has passed for this commit is not run again.
 #   build/published/COMMIT/README.md   the page         build/published/COMMIT/MODE.log   what a mode said
 #   build/published/COMMIT/files/      source archive, .deb files, wheel, policies, SHA256SUMS
@@ -8,10 +8,10 @@
 set -u
 cd "$(dirname "$0")/.." || exit 1
 die() { echo "release.sh: $*" >&2; exit 1; }
-[ -z "$(git status --porcelain)" ] || die "the tree has changes: commit them first"
-all=$(bash cmake/check.sh --help | awk 'NR > 1 { print $1 }' | grep -vxE 'quick|coverage|release')
+all=$(bash cmake/check.sh --help | awk 'NR > 1 { print $1 }' | grep -vx release)
 modes=${*:-$all}
-for mode in $modes; do echo "$all" | grep -qxF -- "$mode" || die "check.sh has no mode '$mode'"; done
+for mode in $modes; do echo "$all" | grep -qxF -- "$mode" || die "check.sh has no mode '$mode' for a release"; done
+[ -z "$(git status --porcelain)" ] || die "the tree has changes: commit them first"
 commit=$(git rev-parse HEAD) short=$(git rev-parse --short=12 HEAD)
 version=$(sed -n 's/^#define RDM_VERSION_[A-Z]* \([0-9]*\)$/\1/p' include/redman/base.h | paste -sd.)
 out=$PWD/build/published/$short files=$PWD/build/published/$short/files copy=$PWD/build/published/tree
@@ -24,7 +24,9 @@ git -C "$copy" fetch -q "$PWD" HEAD || die "cannot fetch $commit"
 for mode in $modes; do
   if [ -s "$out/$mode.passed" ]; then continue; fi
   start=$(date +%s)
-  (cd "$copy" && bash cmake/check.sh "$mode") > "$out/$mode.log" 2>&1 < /dev/null
+  more=$([ "$mode" != arm64 ] || echo all)
+  # shellcheck disable=SC2086
+  (cd "$copy" && bash cmake/check.sh "$mode" $more) > "$out/$mode.log" 2>&1 < /dev/null
   status=$?
   line="$(grep -E '^[0-9]+ passed, [0-9]+ failed$' "$out/$mode.log" | tail -n1)|$(($(date +%s) - start))|$(date -u +%F)"
   rm -f "$out/$mode.failed"
@@ -44,27 +46,30 @@ ls "$files"/*.deb > /dev/null 2>&1 && ls "$files"/*.whl > /dev/null 2>&1 || lost
 (cd "$files" && find . -type f ! -name SHA256SUMS -printf '%P\n' | sort | xargs sha256sum > SHA256SUMS)
 
 # ---- the page
-failed=0
+good=0 number=0 sum=0 rows=''
+for mode in $all; do
+  what=$(bash cmake/check.sh --markdown | awk -F' [|] |^[|] ' -v mode="$mode" '{ name = $2; gsub(/`/, "", name); sub(/ .*/, "", name) } name == mode { print $3 }')
+  counts='' seconds='' day=''
+  IFS='|' read -r counts seconds day < <(cat "$out/$mode.passed" "$out/$mode.failed" 2> /dev/null)
+  if [ -s "$out/$mode.passed" ]; then verdict=passed good=$((good + 1)); elif [ -s "$out/$mode.failed" ]; then verdict=FAILED; else verdict="not run"; fi
+  number=$((number + 1)) sum=$((sum + ${seconds:-0}))
+  rows+="| \`$mode\` | $what | $verdict${counts:+: $counts} | ${seconds:+$((seconds / 60)) min $((seconds % 60)) s} | ${day:--} |"$'\n'
+done
 {
   echo "# redman $version"
   echo
-  echo "Commit \`$commit\`. Machine: $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n1), $(nproc) processors, $(awk '/MemTotal/ { printf "%.0f GiB", $2 / 1048576 }' /proc/meminfo); $(. /etc/os-release && echo "$PRETTY_NAME"); $(c++ --version | head -n1)."
+  echo "$good of $number jobs passed, in $((sum / 3600)) h $((sum / 60 % 60)) min, builds included. Commit \`$commit\`."
+  echo
+  echo "Machine: $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n1), $(nproc) processors, $(awk '/MemTotal/ { printf "%.0f GiB", $2 / 1048576 }' /proc/meminfo); $(. /etc/os-release && echo "$PRETTY_NAME"); $(c++ --version | head -n1)."
   echo
   echo "| \`check.sh\` | what it asks | result | time | day |"
   echo "|---|---|---|---|---|"
-  for mode in $all; do
-    what=$(bash cmake/check.sh --markdown | awk -F' [|] |^[|] ' -v mode="$mode" '{ name = $2; gsub(/`/, "", name); sub(/ .*/, "", name) } name == mode { print $3 }')
-    if [ -s "$out/$mode.passed" ]; then verdict=passed; elif [ -s "$out/$mode.failed" ]; then verdict=FAILED; else verdict="not run"; fi
-    [ "$verdict" = passed ] || failed=1
-    IFS='|' read -r counts seconds day < <(cat "$out/$mode.passed" "$out/$mode.failed" 2> /dev/null)
-    echo "| \`$mode\` | $what | $verdict${counts:+: $counts} | ${seconds:+$((seconds / 60)) min $((seconds % 60)) s} | ${day:-} |"
-    counts='' seconds='' day=''
-  done
+  printf '%s' "$rows"
   echo
   echo "| file | bytes | SHA-256 |"
   echo "|---|---|---|"
   while read -r hash file; do echo "| \`$file\` | $(stat -c %s "$files/$file") | \`$hash\` |"; done < "$files/SHA256SUMS"
-  [ $lost -eq 0 ] || { echo; echo "The .deb files or the wheel are not there: mode \`packages\` makes them."; }
+  [ $lost -eq 0 ] || { echo; echo "The .deb files or the wheel are missing: mode \`packages\` makes them."; }
 } > "$out/README.md"
 echo "$out/README.md"
-[ $failed -eq 0 ] && [ $lost -eq 0 ]
+[ $good -eq $number ] && [ $lost -eq 0 ]

@@ -17,6 +17,7 @@ case $said in
   *"no mode 'no_such_mode'"*quick*hard*) ;;
   *) say "an unknown mode: $said" ;;
 esac
+bash $script release no_such_mode 2>&1 | grep -q "no mode 'no_such_mode' for a release" || say "an unknown mode of a release is not refused"
 bash $script --markdown | while IFS= read -r row; do
   grep -qxF -- "$row" CONTRIBUTING.md || echo "$row"
 done | grep . && say "CONTRIBUTING.md has other rows: bash cmake/tables.sh writes them"
