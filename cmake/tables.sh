@@ -3,6 +3,7 @@
 # and begins the pages of the manual that are missing; with `check` it changes nothing, and says what is not what the tool prints.
 set -u
 tool=$(realpath "${1:-build/release/bin/redman}") mode=${2:-write}
+[ -x "$tool" ] || { echo "tables.sh: there is no tool $tool" >&2; exit 1; }
 cd "$(dirname "$0")/.." || exit 1
 new=$(mktemp -d)
 trap 'rm -rf "$new"' EXIT
