@@ -37,7 +37,7 @@ done
 # ---- files
 lost=0
 git archive --format=tar --prefix="redman-$version/" "$commit" | gzip -9n > "$files/redman-$version.tar.gz"
-git archive --format=tar --prefix="redman-policies-$version/" "$commit:examples/policies" | gzip -9n > "$files/redman-policies-$version.tar.gz"
+git -C examples/policies archive --format=tar --prefix="redman-policies-$version/" "$commit" | gzip -9n > "$files/redman-policies-$version.tar.gz"
 # of mode packages, once it has passed for this commit: builds of an earlier one stay in the copy
 if [ -s "$out/packages.passed" ] && ! ls "$files"/*.whl > /dev/null 2>&1; then
   cp "$copy"/build/package/packages/*.deb "$copy"/build/wheel/*.whl "$files"
