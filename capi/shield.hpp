@@ -12,7 +12,7 @@ struct rdm_shield {
   mutable char error[rdm::kErrorTextSize] = "";  // also of calls that only read
   rdm::Shield* shield = nullptr;
   rdm_spec spec{};  // of its pool
-#if RDM_WITH_POLICY
+#if RDM_WITH_SIM && RDM_WITH_POLICY
   rdm::capi::FrozenMean backups[rdm::Shield::kMostPolicies];
   int32_t num_backups = 0;
 #endif
