@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "base/format.hpp"
+#include "base/names.hpp"
 #include "base/text.hpp"
 #include "physics/collision/convex.hpp"
 #include "physics/model/inertia.hpp"
@@ -86,6 +87,19 @@ Inertia inertia_of(const Object& o, const Vector<ShapeDef>& shapes) {
   return out;
 }
 
+Finish finish_of(const ObjectMaterial& material) {
+  constexpr struct {
+    const char* name;
+    Finish finish;
+  } kFinishes[] = {{"plastic", Finish::kPlastic}, {"shell", Finish::kPlastic}, {"metal", Finish::kMetal},
+                   {"wood", Finish::kWood},       {"glass", Finish::kGlass},   {"rubber", Finish::kRubber},
+                   {"leather", Finish::kRubber},  {"felt", Finish::kCloth},    {"foam", Finish::kCloth},
+                   {"cardboard", Finish::kCloth}};
+  for (const auto& f : kFinishes)
+    if (same_name(f.name, material.name)) return f.finish;
+  return Finish::kPaint;
+}
+
 }  // namespace
 
 Inertia object_inertia(const Object& object) {
@@ -103,6 +117,7 @@ BodyDef make_object_body(const Object& object, const char* name, const Pose& X_W
   for (int i = 0; i < 6; ++i) body.inertia.moment[i] = own.moment[i] * body.inertia.mass / object.mass;
   for (ShapeDef& s : body.shapes) {
     s.material = material;
+    s.finish = finish_of(object.material);
     s.X_LS.p -= own.com;
   }
   if (scale != 1) {

@@ -22,6 +22,7 @@ ShapeDef tube(const char* name, const char* part, double radius, double low, dou
   s.X_LS.p.z = 0.5 * (high + low);
   s.material = material;
   std::copy_n(color, 3, s.color);
+  s.finish = Finish::kGlass;
   return s;
 }
 

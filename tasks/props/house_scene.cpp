@@ -46,6 +46,7 @@ BodyDef make_broom(const HouseMaterials& m, double sink) {
   b.shapes.push_back(
       shape("broom_handle", ShapeKind::kCylinder, {kHandleRadius, kHandleHalf, 0}, {}, m.handle, kWood));
   b.shapes.push_back(shape("broom_head", ShapeKind::kBox, kHeadHalf, {0, 0, kHeadAt}, m.head, kBristle));
+  for (ShapeDef& s : b.shapes) s.finish = Finish::kWood;
   center(&b);
   return b;
 }

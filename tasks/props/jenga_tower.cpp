@@ -111,6 +111,7 @@ void add_tower(const JengaTower& tower, int32_t target, int32_t block, int32_t t
     shape.kind = ShapeKind::kBox;
     shape.size = tower.half[i];
     shape.material = i == 0 ? target : block;
+    shape.finish = Finish::kWood;
     const bool across = tower.half[i].x > tower.half[i].y;
     constexpr uint8_t kColors[3][3] = {{200, 70, 50}, {222, 188, 135}, {205, 165, 110}};
     std::copy_n(kColors[i == 0 ? 0 : across ? 2 : 1], 3, shape.color);

@@ -97,7 +97,7 @@ TEST(Paint, ColoursAreTheShapes) {
 TEST(Paint, LightRaysLieInTheDisc) {
   const Vec3 key = light_direction(0, 0);
   for (int side = 1; side <= kMaxSamplesPerSide; ++side) {
-    const LightRays rays = make_light_rays(side);
+    const LightRays rays = make_light_rays(side, kLightSpread);
     const int count = side * side * rays.per_sample;
     ASSERT_LE(count, kMaxSamplesPerSide * kMaxSamplesPerSide);
     Vec3 mean;

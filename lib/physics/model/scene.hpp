@@ -52,6 +52,9 @@ constexpr int num_sizes(ShapeKind kind) {
 // size: sphere (radius, 0, 0); capsule and cylinder along z (radius, half length of the straight part, 0);
 // box half sizes; plane (0, 0, 0): the half space below z = 0 of its frame; ellipsoid half axes; hull: the
 // scene sets it to half sizes of the box about its frame's origin that holds it. m.
+// What a shape looks made of, in pictures for people.
+enum class Finish : uint8_t { kPaint, kSkin, kPlastic, kRubber, kWood, kMetal, kGlass, kCloth };
+
 struct ShapeDef {
   Name name;
   ShapeKind kind = ShapeKind::kSphere;
@@ -59,6 +62,7 @@ struct ShapeDef {
   Pose X_LS;             // in the frame of the link or body that carries it (of the world if static)
   int32_t material = 0;  // row of the pair friction table
   uint8_t color[3] = {200, 200, 200};
+  Finish finish = Finish::kPaint;
   bool collides = true;  // false: only seen
   Vector<Vec3> points;   // of a hull: what make_hull takes
 };

@@ -11,6 +11,8 @@
 //   box        slabs (Kay and Kajiya 1986): the last of three entries, if it comes before the first of three
 //              exits
 //   hull       the same over the planes of its faces (Cyrus and Beck 1978)
+//   round box  all points within r of a smaller box. Along a ray the square of the distance to a convex body is a
+//              convex function, so Newton's method from outside never passes the first root
 //
 // Only entering counts: an eye inside a shape looks out of it, and a ray that leaves a surface never meets
 // that surface again. All shapes are convex.
@@ -103,6 +105,30 @@ inline Float4 entry_box(const Primitive& s, const Lanes3& o, const Lanes3& d) {
   return select(in <= out, in, splat(kNoHit));
 }
 
+inline Float4 entry_round_box(const Primitive& s, const Lanes3& o, const Lanes3& d) {
+  constexpr int kSteps = 10;
+  const Float4 first = entry_box(s, o, d);
+  Int4 left = first < kNoHit;
+  if (!any(left)) return first;
+  const float r = s.round;
+  Lanes3 p = o + select(left, first, splat(0)) * d;
+  Float4 t = first, gap = splat(0);
+  for (int i = 0; i < kSteps; ++i) {
+    const Lanes3 v =
+        p - Lanes3{clamp(p.x, r - s.size[0], s.size[0] - r), clamp(p.y, r - s.size[1], s.size[1] - r),
+                   clamp(p.z, r - s.size[2], s.size[2] - r)};
+    gap = dot(v, v) - r * r;
+    const Float4 slope = 2.0f * dot(v, d);
+    const Int4 outside = gap > 0.0f;
+    left &= ~(outside & (slope >= 0.0f));
+    const Float4 step = select(left & outside, -gap / select(slope < 0.0f, slope, splat(-1)), splat(0));
+    if (!any(left & (gap > 1e-4f * r * r))) break;
+    t += step;
+    p = p + step * d;
+  }
+  return select(left & (gap < 0.02f * r * r), t, splat(kNoHit));
+}
+
 inline Float4 entry_ellipsoid(const Primitive& s, const Lanes3& o, const Lanes3& d) {
   const float x = 1 / s.size[0], y = 1 / s.size[1], z = 1 / s.size[2];
   const Middle m = middle({x * o.x, y * o.y, z * o.z}, {x * d.x, y * d.y, z * d.z});
@@ -139,7 +165,7 @@ inline Float4 entry(const Primitive& s, const Lanes3& o, const Lanes3& d) {
     case ShapeKind::kCapsule:
       return detail::entry_capsule(s, o, d);
     case ShapeKind::kBox:
-      return detail::entry_box(s, o, d);
+      return s.round > 0 ? detail::entry_round_box(s, o, d) : detail::entry_box(s, o, d);
     case ShapeKind::kCylinder:
       return detail::entry_cylinder(s, o, d);
     case ShapeKind::kEllipsoid:

@@ -4,104 +4,21 @@
 #include <numbers>
 
 #include "base/elementary.hpp"
+#include "sense/render/light.hpp"
 #include "sense/render/shade.hpp"
 
 namespace rdm {
 
 namespace {
 
-constexpr float kOffSurface = 1e-4f;  // m: nearer, a shadow's caster is the surface itself
-
-// Sphere about the points that a tile sees.
-struct Ball {
-  float x, y, z, r;
-};
-
-Ball ball_about(const Hits* hits, int count) {
-  Lanes3 lo = splat(kNoHit, kNoHit, kNoHit), hi = splat(-kNoHit, -kNoHit, -kNoHit);
-  for (int k = 0; k < count; ++k)
-    for (int r = 0; r < kTileSide; ++r) {
-      const Int4 hit = hits[k].who[r] >= 0;
-      const Lanes3 p = hits[k].t[r] * hits[k].d[r];
-      lo = select(hit, min(lo, p), lo);
-      hi = select(hit, max(hi, p), hi);
-    }
-  const float x1 = largest(hi.x), y1 = largest(hi.y), z1 = largest(hi.z);
-  const float x0 = -largest(-lo.x), y0 = -largest(-lo.y), z0 = -largest(-lo.z);
-  if (!(x0 <= x1)) return {0, 0, 0, -1};
-  const float dx = x1 - x0, dy = y1 - y0, dz = z1 - z0;
-  return {0.5f * (x0 + x1), 0.5f * (y0 + y1), 0.5f * (z0 + z1),
-          0.5f * std::sqrt(dx * dx + dy * dy + dz * dz)};
-}
-
-// Primitives that may stand between the ball and the light.
-int32_t list_shadows(const Painter& painter, const Ball& ball, int32_t* out) {
-  const float lx = painter.lights.key.x[0], ly = painter.lights.key.y[0], lz = painter.lights.key.z[0];
-  int32_t n = 0;
-  for (int32_t k = 0; k < painter.all.count; ++k) {
-    const Primitive& s = painter.scratch.primitives[painter.all.at[k]];
-    if (s.kind == ShapeKind::kPlane) continue;
-    const float x = s.p_ES[0] - ball.x, y = s.p_ES[1] - ball.y, z = s.p_ES[2] - ball.z;
-    const float along = x * lx + y * ly + z * lz, reach = 1.01f * (s.radius + ball.r) + 1e-3f;
-    if (along < -reach) continue;
-    const float wide = reach + static_cast<float>(1.1 * kLightSpread) * (along + reach);
-    if (x * x + y * y + z * z - along * along <= wide * wide) out[n++] = painter.all.at[k];
-  }
-  return n;
-}
-
-// Primitives that may hide a part of the sky from the ball.
-int32_t list_near(const Painter& painter, const Ball& ball, int32_t* out) {
-  int32_t n = 0;
-  for (int32_t k = 0; k < painter.all.count; ++k) {
-    const Primitive& s = painter.scratch.primitives[painter.all.at[k]];
-    if (s.kind == ShapeKind::kPlane) continue;
-    const float x = s.p_ES[0] - ball.x, y = s.p_ES[1] - ball.y, z = s.p_ES[2] - ball.z;
-    const float reach = 1.01f * (s.radius + ball.r + kOcclusionReach * s.thick);
-    if (x * x + y * y + z * z <= reach * reach) out[n++] = painter.all.at[k];
-  }
-  return n;
-}
-
-// Share of the light's rays of a sample that reach the points p.
-Float4 light_share(const Painter& painter, const IndexList& list, Int4 who, const Lanes3& p, const Lanes3& n,
-                   int sample, int row) {
-  const LightRays& lights = painter.lights;
-  const int samples = painter.options.samples_per_side * painter.options.samples_per_side;
-  Int4 left[kMaxRaysPerSample];
-  for (int j = 0; j < lights.per_sample; ++j)
-    left[j] = (who >= 0) & (dot(n, lights.at[sample + j * samples][row]) > 0.0f);
-  Float4 lost = splat(0);
-  for (int32_t k = 0; k < list.count; ++k) {
-    const Primitive& s = painter.scratch.primitives[list.at[k]];
-    const Lanes3 o = to_shape(s, p);
-    // A convex shape throws no shadow on itself; its rounded normals would say so at the edges.
-    const Int4 other = who != list.at[k];
-    for (int j = 0; j < lights.per_sample; ++j) {
-      const Int4 asked = left[j] & other;
-      if (!any(asked)) continue;
-      const Float4 t = entry(s, o, rotate_to_shape(s, lights.at[sample + j * samples][row]));
-      const Int4 dark = asked & (t > kOffSurface) & (t < kNoHit);
-      lost += select(dark, splat(1), splat(0));
-      left[j] &= ~dark;
-    }
-  }
-  return 1.0f - lost * (1 / static_cast<float>(lights.per_sample));
-}
-
-// Colour of a plane where the rays d meet it at depth t; a sample stands for `share` of a pixel's side.
-Lanes3 floor_albedo(const Painter& painter, const Primitive& s, const Lanes3& d, Float4 t, float share) {
-  const Lanes3 v = rotate_to_shape(s, d);
-  const Lanes3 right = rotate_to_shape(s, painter.rays.right), down = rotate_to_shape(s, painter.rays.down);
-  const Float4 slope = 1.0f / select(v.z < 0.0f, v.z, splat(-1));
-  const Float4 wx = abs(right.x - v.x * right.z * slope) + abs(down.x - v.x * down.z * slope);
-  const Float4 wy = abs(right.y - v.y * right.z * slope) + abs(down.y - v.y * down.z * slope);
-  return checker(s.color, s.o_S[0] + t * v.x, s.o_S[1] + t * v.y, share * t * wx, share * t * wy);
-}
-
 struct Nearby {
   IndexList shadow, near;
 };
+
+Lanes3 checkered(const Painter& painter, const Primitive& s, const Lanes3& d, Float4 t, float share) {
+  const Footprint f = footprint(painter, s, d, t, share);
+  return checker(s.color, f.x, f.y, f.wx, f.wy);
+}
 
 // Colour of four rays.
 Lanes3 color_of(const Painter& painter, const Nearby& nearby, const Hits& hits, int r, int sample,
@@ -123,12 +40,14 @@ Lanes3 color_of(const Painter& painter, const Nearby& nearby, const Hits& hits, 
     const Lanes3 n = rotate_from_shape(s, surface_normal(s, to_shape(s, surface.p)));
     surface.n = select(same, n, surface.n);
     const Lanes3 color =
-        plane ? floor_albedo(painter, s, d, t, share) : splat(s.color[0], s.color[1], s.color[2]);
+        plane ? checkered(painter, s, d, t, share) : splat(s.color[0], s.color[1], s.color[2]);
     surface.albedo = select(same, color, surface.albedo);
     if (plane) fade = select(same, haze(t * sqrt(dot(d, d)), s.o_S[2]), fade);
   }
+  const int samples = painter.options.samples_per_side * painter.options.samples_per_side;
   if (nearby.shadow.count > 0)
-    surface.lit = light_share(painter, nearby.shadow, who, surface.p, surface.n, sample, r);
+    surface.lit = light_share(painter, nearby.shadow, who, surface.p, surface.n,
+                              {sample, samples, painter.lights.per_sample}, r);
   for (int32_t k = 0; k < nearby.near.count; ++k) {
     const int32_t index = nearby.near.at[k];
     const Float4 hidden = occlusion(painter.scratch.primitives[index], surface.p, surface.n);
@@ -153,14 +72,14 @@ void store(const Painter& painter, const Lanes3 (&sum)[kTileSide], float scale, 
 
 }  // namespace
 
-LightRays make_light_rays(int32_t samples_per_side) {
+LightRays make_light_rays(int32_t samples_per_side, double spread) {
   // Ranks of a 4 x 4 ordered dither: neighbours differ most.
   constexpr int kRank[kTileSide][kFloat4Lanes] = {
       {0, 8, 2, 10}, {12, 4, 14, 6}, {3, 11, 1, 9}, {15, 7, 13, 5}};
   constexpr double kGoldenAngle = 2.399963229728653;
   LightRays out;
   const int samples = samples_per_side * samples_per_side;
-  out.per_sample = samples > 1 && samples <= 16 ? kMaxRaysPerSample : 1;
+  out.per_sample = samples > 1 && samples <= 16 ? kRaysPerSample : 1;
   const Vec3 key = light_direction(0, 0);
   out.key = splat(static_cast<float>(key.x), static_cast<float>(key.y), static_cast<float>(key.z));
   const int count = samples * out.per_sample;
@@ -170,7 +89,7 @@ LightRays make_light_rays(int32_t samples_per_side) {
         const double radius = count > 1 ? std::sqrt((k + 0.5) / count) : 0;
         const double angle = kGoldenAngle * k + kRank[r][i] * (std::numbers::pi / 8);
         const elementary::SinCos turn = elementary::sincos(angle);
-        const Vec3 l = light_direction(radius * turn.cos, radius * turn.sin);
+        const Vec3 l = light_direction(radius * turn.cos, radius * turn.sin, spread);
         out.at[k][r].x[i] = static_cast<float>(l.x);
         out.at[k][r].y[i] = static_cast<float>(l.y);
         out.at[k][r].z[i] = static_cast<float>(l.z);
@@ -192,8 +111,10 @@ void paint_tile(const Painter& painter, const IndexList& seen, bool flat, int32_
       return;
     }
     ball.r *= margin;
-    nearby.shadow = {painter.scratch.shadow,
-                     options.shadows ? list_shadows(painter, ball, painter.scratch.shadow) : 0};
+    nearby.shadow = {painter.scratch.shadow, options.shadows
+                                                 ? list_toward(painter, ball, light_direction(0, 0),
+                                                               kLightSpread, painter.scratch.shadow)
+                                                 : 0};
     nearby.near = {painter.scratch.near, list_near(painter, ball, painter.scratch.near)};
   };
 

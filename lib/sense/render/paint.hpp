@@ -9,13 +9,13 @@ namespace rdm {
 
 // Directions to points of the light's disc, turned from pixel to pixel of a tile so that the edges of soft
 // shadows show no bands. One ray for a single sample a pixel: hard shadows.
-inline constexpr int kMaxRaysPerSample = 4;
+inline constexpr int kRaysPerSample = 4, kMaxRaysPerSample = 16;
 struct LightRays {
   Lanes3 key;  // to the middle of the disc
   int32_t per_sample = 1;
   Lanes3 at[kMaxSamplesPerSide * kMaxSamplesPerSide][kTileSide];  // [ray][row of a tile]
 };
-LightRays make_light_rays(int32_t samples_per_side);
+LightRays make_light_rays(int32_t samples_per_side, double spread);
 
 // What paint_tile needs to know of the picture.
 struct Painter {

@@ -162,6 +162,8 @@ bool make_primitive(const RenderShape& shape, int32_t index, const View& view, P
     out->size[k] = static_cast<float>(shape.size[k]);
     out->color[k] = 0;
   }
+  out->round = static_cast<float>(shape.round);
+  out->finish = shape.finish;
   bound_in_image(shape, R_CW * R_ES, R_CW * p_ES, view, out);
   bound_bulk(shape, R_ES, out);
   return true;

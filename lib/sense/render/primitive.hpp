@@ -15,11 +15,13 @@ namespace rdm {
 struct Primitive {
   ShapeKind kind;
   int32_t id;
-  const Hull* hull;       // of kind kHull
-  float R_SE[9];          // row-major
-  float p_ES[3];          // centre, m
-  float o_S[3];           // the eye in S, m
-  float size[3];          // as ShapeDef::size, m
+  const Hull* hull;  // of kind kHull
+  float R_SE[9];     // row-major
+  float p_ES[3];     // centre, m
+  float o_S[3];      // the eye in S, m
+  float size[3];     // as ShapeDef::size, m
+  float round;       // of the edges, as RenderShape::round, m
+  Finish finish;
   float radius;           // of the bounding sphere about p_ES, m; infinite for a plane
   float color[3];         // linear light, 0 to 1; make_primitive leaves it black
   float nearest;          // no point of it has a smaller depth, m; 0 where the eye is close

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "sense/render/fine.hpp"
 #include "sense/render/paint.hpp"
 #include "sense/render/shade.hpp"
 #include "sense/render/trace.hpp"
@@ -85,6 +86,7 @@ RaycastScratch carve_raycast_scratch(Arena& arena, int32_t max_shapes) {
   scratch.tile = arena.make<int32_t>(count);
   scratch.shadow = arena.make<int32_t>(count);
   scratch.near = arena.make<int32_t>(count);
+  scratch.mirror = arena.make<int32_t>(count);
   return scratch;
 }
 
@@ -97,8 +99,10 @@ void render(const RenderShape* shapes, int32_t num_shapes, const Camera& camera,
   const IndexList all{scratch.order, count};
   const Rays rays = make_rays(view);
   LightRays lights;
-  if (image.rgb) lights = make_light_rays(options.samples_per_side);
-  const Painter painter{view, rays, lights, options, scratch, all};
+  RenderOptions how = options;
+  if (how.fine) how.samples_per_side = kFineLightSide;
+  if (image.rgb) lights = make_light_rays(how.samples_per_side, how.fine ? kFineLightSpread : kLightSpread);
+  const Painter painter{view, rays, lights, how, scratch, all};
   const bool measure = image.depth || image.segmentation;
 
   for (int32_t y = 0; y < image.height; y += kTileSide) {
@@ -115,7 +119,11 @@ void render(const RenderShape* shapes, int32_t num_shapes, const Camera& camera,
         trace(rays, primitives, seen, options.cull, fx + 0.5f, fy + 0.5f, &hits);
         store(image, primitives, hits, x, y);
       }
-      if (image.rgb) paint_tile(painter, seen, flat, x, y, image.rgb);
+      if (!image.rgb) continue;
+      if (options.fine)
+        paint_fine_tile(painter, seen, x, y, image.rgb);
+      else
+        paint_tile(painter, seen, flat, x, y, image.rgb);
     }
   }
 }

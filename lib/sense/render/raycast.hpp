@@ -28,6 +28,7 @@ struct RenderOptions {
   int32_t samples_per_side = 1;  // colour takes the mean of n x n rays per pixel, 1 to kMaxSamplesPerSide
   bool shadows = true;           // n = 1: hard; more: soft, the samples share out the light's disc
   bool cull = true;              // false: every ray meets every shape; the same bytes, slowly
+  bool fine = false;  // as people like it (fine.hpp); samples_per_side and shadows count for nothing
 };
 
 // Workspace of one thread for up to max_shapes shapes, about 240 bytes each.
@@ -39,6 +40,7 @@ struct RaycastScratch {
   int32_t* tile = nullptr;          // [max_shapes], those that a tile may see
   int32_t* shadow = nullptr;        // [max_shapes], those that may darken a tile
   int32_t* near = nullptr;          // [max_shapes], those that may hide a tile's sky
+  int32_t* mirror = nullptr;        // [max_shapes], those that a tile's floor may mirror
 };
 // Error(kRange) for max_shapes outside [0, kMaxRenderShapes].
 RaycastScratch carve_raycast_scratch(Arena& arena, int32_t max_shapes);

@@ -14,6 +14,8 @@ struct RenderShape {
   uint8_t color[3] = {200, 200, 200};  // sRGB; planes are a checkerboard of it and a darker tone
   int32_t id = 0;                      // what the segmentation image holds where this shape is seen
   const Hull* hull = nullptr;          // of kind kHull
+  double round = 0;  // of the edges of boxes and hulls, m; a box's at most its smallest half size
+  Finish finish = Finish::kPaint;  // of fine pictures
 };
 
 }  // namespace rdm

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/elementary.hpp"
+#include "sense/render/waves.hpp"
 
 namespace rdm {
 
@@ -14,25 +15,12 @@ constexpr float kDarker = 0.74f;    // of the second square
 constexpr float kHazeRange = 3.5f;  // eye heights at which half of the floor is left
 constexpr float kLowEye = 0.8f;     // m: lower eyes see as far as this one
 
-Float4 floor(Float4 v) {
-  return Float4{std::floor(v[0]), std::floor(v[1]), std::floor(v[2]), std::floor(v[3])};
-}
-
-// Mean over [x - w/2, x + w/2] of a wave that is +1 and -1 on alternate unit intervals.
-Float4 square_wave(Float4 x, Float4 w) {
-  const auto ramp = [](Float4 v) {
-    const Float4 half = 0.5f * v;
-    return abs(half - floor(half) - 0.5f);
-  };
-  return 2.0f * (ramp(x - 0.5f * w) - ramp(x + 0.5f * w)) / w;
-}
-
 }  // namespace
 
-Vec3 light_direction(double u, double v) {
+Vec3 light_direction(double u, double v, double spread) {
   const Vec3 key = normalized(Vec3{0.42, -0.38, 0.82});
   const Vec3 side = normalized(cross({0, 0, 1}, key)), up = cross(key, side);
-  return normalized(key + kLightSpread * (u * side + v * up));
+  return normalized(key + spread * (u * side + v * up));
 }
 
 Lanes3 shade(const Surface& s, const Lanes3& key) {
@@ -94,7 +82,10 @@ float from_srgb(uint8_t value) {
 uint8_t to_srgb(float value) {
   if (!(value > 0)) return 0;
   if (!(value < 16)) return 255;
-  const float v = value * (1 + 0.12f * value) / (1 + 0.55f * value);  // highlights bend, shadows stay
+  return encode_srgb(value * (1 + 0.12f * value) / (1 + 0.55f * value));  // highlights bend, shadows stay
+}
+
+uint8_t encode_srgb(float v) {
   const float s1 = std::sqrt(v), s2 = std::sqrt(s1), s3 = std::sqrt(s2);
   const float srgb =
       v <= 0.0031308f ? 12.92f * v : 0.66200269f * s1 + 0.68412206f * s2 - 0.32358360f * s3 - 0.02254115f * v;

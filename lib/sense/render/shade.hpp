@@ -19,9 +19,9 @@ struct Surface {
   Float4 open;  // share of the sky that is not hidden by things close by, 0 to 1
 };
 
-// Unit direction to the key light, in world axes. (u, v) is a point of the light's disc, in the unit circle.
-Vec3 light_direction(double u, double v);
 inline constexpr double kLightSpread = 0.045;  // tangent of the disc's half angle
+// Unit direction to the key light, in world axes. (u, v) is a point of the light's disc, in the unit circle.
+Vec3 light_direction(double u, double v, double spread = kLightSpread);
 
 // Colour of the points under the key light from direction `key`.
 Lanes3 shade(const Surface& s, const Lanes3& key);
@@ -45,5 +45,7 @@ inline constexpr float kOcclusionReach = 5;
 float from_srgb(uint8_t value);
 // Tone curve and sRGB, 0 to 255; negative and non-finite values give 0.
 uint8_t to_srgb(float value);
+// sRGB alone, of at least 0.
+uint8_t encode_srgb(float v);
 
 }  // namespace rdm
