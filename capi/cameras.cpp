@@ -1,4 +1,4 @@
-// Looking into a world: shapes, poses, contacts, pictures.
+// Looking into a world: shapes, poses, contacts, rays.
 #include "capi/handles.hpp"
 #include "capi/pose.hpp"
 #include "redman/deprecated.h"
@@ -10,7 +10,6 @@
 #include "physics/limits.hpp"
 #include "sense/mounted_camera.hpp"
 #include "sense/ray.hpp"
-#include "sense/scene_shapes.hpp"
 
 using namespace rdm;
 using namespace rdm::capi;
@@ -25,8 +24,6 @@ World& world_of(const rdm_pool* p, int32_t env) {
 void to_floats(const Vec3& v, float out[3]) {
   for (int k = 0; k < 3; ++k) out[k] = static_cast<float>(v[k]);
 }
-
-constexpr int kColorSamples = 3;  // per side of a pixel
 
 }  // namespace
 
@@ -106,24 +103,6 @@ rdm_result rdm_pool_get_contacts(const rdm_pool* p, int32_t env, rdm_contact* ou
       o.depth = static_cast<float>(c.depth);
       out[i] = o;
     }
-  });
-}
-
-rdm_result rdm_pool_render(rdm_pool* p, int32_t env, const char* camera, int32_t w, int32_t h, uint8_t* rgb,
-                           float* depth, int32_t* segmentation) {
-  return call_on(p, [&] {
-    const World& world = world_of(p, env);
-    const Camera eye = pool_camera(p, env, camera);
-    const int32_t count = gather_shapes(world, p->shapes);
-    Image image;
-    image.width = w;
-    image.height = h;
-    image.rgb = rgb;
-    image.depth = depth;
-    image.segmentation = segmentation;
-    RenderOptions options;
-    options.samples_per_side = rgb ? kColorSamples : 1;
-    render(p->shapes, count, eye, image, options, p->raycast);
   });
 }
 

@@ -36,7 +36,7 @@ struct rdm_pool {
   rdm_field* fields = nullptr;    // [number of fields]
   rdm::capi::Layout layout;       // these, for texts
   rdm::RaycastScratch raycast;
-  rdm::RenderShape* shapes = nullptr;  // [num_shapes]
+  rdm::RenderShape* shapes = nullptr;  // [most_drawn_shapes]
 };
 
 namespace rdm::capi {

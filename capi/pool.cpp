@@ -3,6 +3,7 @@
 #include "capi/handles.hpp"
 #if RDM_WITH_SIM
 #include "env/resolved_config.hpp"
+#include "sense/drawn_shapes.hpp"
 #include "tasks/catalog.hpp"
 #endif
 
@@ -73,9 +74,9 @@ void carve(Arena& arena, const Task& task, const TaskInfo& info, rdm_pool* p) {
   p->initial_mean = arena.make<float>(static_cast<size_t>(task.action_dim()));
   p->cost_limits = arena.make<double>(static_cast<size_t>(info.num_costs));
   p->fields = arena.make<rdm_field>(task.fields().size());
-  const auto shapes = task.scene().shapes.size();
-  p->shapes = arena.make<RenderShape>(shapes);
-  p->raycast = carve_raycast_scratch(arena, static_cast<int32_t>(shapes));
+  const int32_t shapes = most_drawn_shapes(task.scene());
+  p->shapes = arena.make<RenderShape>(static_cast<size_t>(shapes));
+  p->raycast = carve_raycast_scratch(arena, shapes);
 }
 
 size_t side_bytes(const Task& task, const TaskInfo& info) {

@@ -297,7 +297,8 @@ RDM_API rdm_result rdm_pool_get_contacts(const rdm_pool *p, int32_t env, rdm_con
                                          size_t capacity, size_t *count);
 /* A picture of world env by the task's camera of that name. rgb [h][w][3], depth [h][w] (m along
  * the optical axis, 0: nothing hit), segmentation [h][w] (shape, -1: nothing); each may be NULL. 1
- * <= w, h <= 8192. */
+ * <= w, h <= 8192. The colours are made for people; rdm_pool_draw in sense.h has a plainer look at
+ * half the price, as observations have it, and draws several worlds in one picture. */
 RDM_API rdm_result rdm_pool_render(rdm_pool *p, int32_t env, const char *camera, int32_t w,
                                    int32_t h, uint8_t *rgb, float *depth, int32_t *segmentation);
 typedef struct rdm_pool_stats { /* counts since create */

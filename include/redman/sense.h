@@ -65,6 +65,33 @@ RDM_API rdm_result rdm_pool_sensor_camera_at(const rdm_pool *p, int32_t cloud, i
 RDM_API rdm_result rdm_pool_get_hull(const rdm_pool *p, int32_t i, float *points, size_t capacity,
                                      size_t *count);
 
+/* ---- pictures for people --------------------------------------------------------------------- */
+/* How pictures look. */
+enum rdm_look {
+  RDM_LOOK_FINE = 0,  /* for people: soft shadows, materials, round edges, fingernails */
+  RDM_LOOK_PLAIN = 1  /* as rdm_sensors shows them, in half the time or less */
+};
+/* What rdm_pool_draw draws. */
+typedef struct rdm_picture {
+  uint32_t struct_size;         /* bytes */
+  int32_t env;                  /* world, the first of several */
+  int32_t num_envs;             /* worlds side by side in one scene, from env on; 0: one */
+  int32_t width;                /* pixels, 1..8192 */
+  int32_t height;               /* pixels, 1..8192 */
+  int32_t look;                 /* enum rdm_look */
+  const char *camera;           /* of the task, by name; it is moved back until several worlds fit
+                                 * into the picture */
+  uint8_t *rgb;                 /* [height][width][3], or NULL */
+  float *depth;                 /* [height][width] m along the optical axis, 0: nothing; or NULL */
+  int32_t *segmentation;        /* [height][width], or NULL: shape i of world env + k is
+                                 * k * num_shapes + i, -1: nothing */
+} rdm_picture;
+/* Draws worlds as rdm_pool_render does, which is this for one world and RDM_LOOK_FINE. Same state,
+ * same bytes. Depth and segmentation are those of the shapes that collide, whatever the look.
+ * Several worlds take memory for the time of the call. ARGUMENT without a camera, NOT_FOUND for one
+ * that the task does not have, RANGE for another member outside of what it may be. */
+RDM_API rdm_result rdm_pool_draw(rdm_pool *p, const rdm_picture *picture);
+
 /* Farthest point sampling: chooses `wanted` of points [count][3], first number `start`, then always
  * the one that is farthest from all chosen before, and writes their numbers to chosen [wanted].
  * Exact. scratch [scratch_bytes]: rdm_sample_scratch bytes or more, of any alignment; no heap. */

@@ -23,6 +23,19 @@ inline Rows<const float> points(const rdm_sensors& s, size_t env) {
   return {s.points ? s.points + 3 * n * env : nullptr, n, 3};
 }
 
+// [height][width][3] bytes of what `picture` says; its own pixels are not looked at.
+inline Bytes draw(const Pool& pool, rdm_picture picture) {
+  const bool fits = picture.width >= 1 && picture.height >= 1 && picture.width <= 8192 &&
+                    picture.height <= 8192;  // if not, the call says so
+  const auto w = static_cast<size_t>(picture.width), h = static_cast<size_t>(picture.height);
+  Bytes rgb(fits ? w * h * 3 : 0);
+  picture.rgb = rgb.data();
+  picture.depth = nullptr;
+  picture.segmentation = nullptr;
+  check(rdm_pool_draw(pool.get(), &picture));
+  return rgb;
+}
+
 // Clouds [rows][count][3], m, world; classes [rows][count] and colors [rows][count][3] or NULL. All
 // are borrowed.
 inline rdm_points points(const float* metres, int32_t count, const uint8_t* classes = nullptr,

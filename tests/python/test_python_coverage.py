@@ -32,6 +32,7 @@ REASONS = {
     "a Policy of Python is immutable and shared by threads: agent.policy() is a new one",
     "rdm_policy_read_file": "Policy.load reads the file itself", "rdm_agent_write_policy_file": "agent.policy().save(path)",
     "rdm_pool_get_buffers": "rows are arrays of numpy, which the pool is given (rdm_pool_set_buffers)",
+    "rdm_pool_render": "Pool.render, by rdm_pool_draw",
     "rdm_pool_setting_at": "pool.options has all, by rdm_pool_get_settings",
     "rdm_agent_setting_at": "agent.options has all, by rdm_agent_get_settings",
     "rdm_fail": "a function of redman.Task raises", "rdm_random_bits": "Worlds.uniform draws", "rdm_random_split": "Task.draws", "rdm_scene_get_[rt]*": "SceneBuilder.option", "rdm_rotation": "numpy turns",

@@ -186,11 +186,24 @@ class Shown(unittest.TestCase):
         with self.assertRaises(redman.ArgumentError):
             pool.render(what="smell")
 
+    def test_looks_and_several_worlds(self):
+        pool = played()
+        fine, plain = pool.render(1, width=64, height=48), pool.render(1, width=64, height=48, look="plain")
+        self.assertFalse(np.array_equal(fine, plain))
+        self.assertTrue(np.array_equal(fine, pool.render(1, width=64, height=48)))
+        shapes = len(pool.shapes)
+        seen = pool.render(1, width=96, height=72, what="segmentation", num_envs=3)
+        self.assertEqual(set(np.unique(seen[seen >= 0] // shapes)), {0, 1, 2})
+        with self.assertRaises(redman.RangeError):
+            pool.render(2, num_envs=3)
+        with self.assertRaises(redman.ArgumentError):
+            pool.render(look="pretty")
+
     def test_a_notebook_gets_a_png(self):
         png = played()._repr_png_()
         self.assertEqual(png[:8], b"\x89PNG\r\n\x1a\n")
         width, height = struct.unpack(">II", png[16:24])
-        self.assertEqual((width, height), (4 * 240 + 3 * 2, 180))
+        self.assertEqual((width, height), (640, 400))
         size = struct.unpack(">I", png[33:37])[0]
         self.assertEqual(len(zlib.decompress(png[41:41 + size])), height * (3 * width + 1))
 
