@@ -24,7 +24,7 @@ struct RenderFlags {
   PoolSettings pool;
   std::vector<std::string> sets;
   int32_t step = 0, strip = 0, from = 0, to = -1, width = 0, height = 0;
-  bool task_given = false, step_given = false, cloud = false;
+  bool task_given = false, step_given = false, cloud = false, plain = false;
 };
 
 void read_size(RenderFlags& flags) {
@@ -45,7 +45,7 @@ void read_size(RenderFlags& flags) {
 }
 
 Scene scene_of(const RenderFlags& flags, const ActorChoice& choice) {
-  return {flags.pool, choice, flags.camera, flags.width, flags.height, flags.cloud};
+  return {flags.pool, choice, {flags.camera, flags.width, flags.height, flags.cloud, flags.plain}};
 }
 
 Image draw(const RenderFlags& flags, const ActorChoice& choice, Scene& scene) {
@@ -102,6 +102,8 @@ Report run_render(RenderFlags flags) {
   choice.shield = read_shield_word(flags.shield);
   adopt_task(choice, flags.task_given, flags.sets, flags.pool);
   apply_sets(flags.sets, flags.pool, nullptr);
+  if (flags.pool.envs > 1 && (flags.cloud || !flags.html.empty() || !flags.glb.empty()))
+    throw Usage("--worlds: --html, --glb and --cloud show one world");
   const bool plays = !flags.video.empty() || !flags.html.empty() || !flags.glb.empty();
   const bool pictures = !plays || !flags.out.empty() || flags.strip > 0 || flags.step_given;
   if (flags.out.empty()) {
@@ -193,6 +195,12 @@ void add_render(CLI::App& app, Run& run) {
       ->check(at_least(0));
   command->add_option("--size", flags->size, "width and height of one picture, pixels")->type_name("WxH");
   command->add_option("--camera", flags->camera, "camera of the task, by name");
+  command
+      ->add_option("--worlds", flags->pool.envs,
+                   "number of worlds that stand side by side in a picture, each with an episode of its own")
+      ->check(CLI::Range(1, 1024));
+  command->add_flag("--plain", flags->plain,
+                    "draw as observations look, in half the time: without materials and round edges");
   command->add_flag("--cloud", flags->cloud,
                     "below each picture draw the point cloud of the last decision, by the same camera and "
                     "coloured by class");

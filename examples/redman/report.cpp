@@ -71,8 +71,8 @@ Strip strip_of(const Configuration& c, const ReportFlags& flags) {
   settings.envs = 1;
   const ActorChoice choice = choose_actor(run.path);
   constexpr int32_t kWidth = 260, kHeight = 195;
-  const int32_t last = last_step(Scene(settings, choice, camera, kWidth, kHeight), -1);
-  Scene scene(settings, choice, camera, kWidth, kHeight);
+  const int32_t last = last_step(Scene(settings, choice, {camera, kWidth, kHeight}), -1);
+  Scene scene(settings, choice, {camera, kWidth, kHeight});
   Strip strip{png_bytes(draw_strip(scene, flags.strip, 0, last)), ""};
   const redman::Pool& pool = scene.pool();
   strip.caption =

@@ -98,20 +98,20 @@ TEST(Cloud, StandsBelowThePicture) {
   ActorChoice hold;
   hold.baseline = RDM_BASELINE_HOLD;
   const auto settings = settings_with("front", "grasp");
-  Scene with(settings, hold, "front", 80, 60, true), without(settings, hold, "front", 80, 60);
+  Scene with(settings, hold, {"front", 80, 60, true}), without(settings, hold, {"front", 80, 60});
   const Image a = with.picture(), b = without.picture();
   ASSERT_EQ(a.height, 120);
   ASSERT_EQ(a.rgb.size(), 2 * b.rgb.size());
   const size_t row = 80 * 3;
   EXPECT_TRUE(std::equal(b.rgb.begin(), b.rgb.end() - 2 * row, a.rgb.begin())) << "but for the line between";
-  EXPECT_EQ(Scene(settings, hold, "front", 80, 60, true).picture().rgb, a.rgb) << "the same again";
+  EXPECT_EQ(Scene(settings, hold, {"front", 80, 60, true}).picture().rgb, a.rgb) << "the same again";
   with.advance_to(30);
   EXPECT_NE(with.picture().rgb, a.rgb);
 
   PoolSettings blind = settings;
   blind.options = {};
-  EXPECT_THROW(Scene(blind, hold, "front", 80, 60, true), Usage);
-  EXPECT_THROW(Scene(settings, hold, "right_palm", 80, 60, true), Usage);
+  EXPECT_THROW(Scene(blind, hold, {"front", 80, 60, true}), Usage);
+  EXPECT_THROW(Scene(settings, hold, {"right_palm", 80, 60, true}), Usage);
 }
 
 }  // namespace

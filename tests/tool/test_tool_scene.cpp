@@ -16,7 +16,7 @@ Scene wall(bool shielded) {
   pool.seed = 2;
   ActorChoice choice = choose_actor("trained", pool.task);
   choice.shield = read_shield_word(shielded ? "predict" : "off");
-  return {pool, choice, "front", kWidth, kHeight};
+  return {pool, choice, {"front", kWidth, kHeight}};
 }
 
 bool bordered(const Image& image) {

@@ -27,20 +27,15 @@ rdm_camera_info cloud_camera(const redman::Pool& pool, const std::string& name) 
 
 }  // namespace
 
-Scene::Scene(const PoolSettings& settings, const ActorChoice& choice, std::string camera, int32_t width,
-             int32_t height, bool cloud)
-    : pool_(make_pool(settings, RDM_AUTORESET_OFF)),
-      actor_(choice, pool_),
-      camera_(std::move(camera)),
-      width_(width),
-      height_(height) {
+Scene::Scene(const PoolSettings& settings, const ActorChoice& choice, SceneView view)
+    : pool_(make_pool(settings, RDM_AUTORESET_OFF)), actor_(choice, pool_), view_(std::move(view)) {
   pool_.reset();
   try {
-    pool_.render(0, camera_.c_str(), 1, 1);
+    pool_.render(0, view_.camera.c_str(), 1, 1);
   } catch (const redman::Error& e) {
     throw Usage(std::string("--") + e.what());
   }
-  if (cloud) cloud_ = cloud_camera(pool_, camera_);
+  if (view_.cloud) cloud_ = cloud_camera(pool_, view_.camera);
   actor_.restart();
 }
 
@@ -61,12 +56,18 @@ void Scene::advance_to(int32_t step) {
 Image Scene::picture() {
   using Clock = std::chrono::steady_clock;
   const auto begin = Clock::now();
-  Image image{width_, height_, {}};
-  image.rgb = as_usage([&] { return pool_.render(0, camera_.c_str(), width_, height_); });
+  Image image{view_.width, view_.height, {}};
+  auto what = redman::sized<rdm_picture>();
+  what.num_envs = static_cast<int32_t>(pool_.num_envs());
+  what.width = view_.width;
+  what.height = view_.height;
+  what.look = view_.plain ? RDM_LOOK_PLAIN : RDM_LOOK_FINE;
+  what.camera = view_.camera.c_str();
+  image.rgb = as_usage([&] { return redman::draw(pool_, what); });
   if (cloud_) {
     const rdm_sensors s = redman::sensors(pool_);
-    image = one_below_the_other(
-        image, draw_cloud(*cloud_, s.points, s.point_shape, s.point_class, s.num_points, width_, height_));
+    image = one_below_the_other(image, draw_cloud(*cloud_, s.points, s.point_shape, s.point_class,
+                                                  s.num_points, view_.width, view_.height));
   }
   if (frames_ > 0 ? intervened_ : stepped_in()) add_border(image);
   intervened_ = false;

@@ -1,4 +1,4 @@
-// One world played from the seed, and pictures of it: the same episode each time.
+// Worlds played from the seed, and pictures of them: the same episode each time, that of the first world.
 #pragma once
 #include "draw/image.hpp"
 #include "play/actor.hpp"
@@ -6,13 +6,18 @@
 
 namespace tool {
 
+struct SceneView {
+  std::string camera;
+  int32_t width = 0, height = 0;
+  bool cloud = false;  // below the picture, the cloud of the last decision
+  bool plain = false;  // as observations look
+};
+
 class Scene {
  public:
-  // Usage with the nearest name when the pool has no such camera. With `cloud` pictures are twice as high:
-  // below is the cloud that the last decision was made on, by the same camera; Usage when there is none, or
-  // the camera rides on a robot.
-  Scene(const PoolSettings& settings, const ActorChoice& choice, std::string camera, int32_t width,
-        int32_t height, bool cloud = false);
+  // Usage with the nearest name when the pool has no such camera. With a cloud pictures are twice as high; Usage
+  // when there is none, or the camera rides on a robot. Several worlds stand side by side in one picture.
+  Scene(const PoolSettings& settings, const ActorChoice& choice, SceneView view);
   const redman::Pool& pool() const { return pool_; }
   int32_t step() const { return step_; }
   // False, and nothing happens, when the episode is over.
@@ -31,9 +36,9 @@ class Scene {
  private:
   redman::Pool pool_;
   Actor actor_;
-  std::string camera_;
+  SceneView view_;
   std::optional<rdm_camera_info> cloud_;  // that looks at clouds, where they are wanted
-  int32_t width_, height_, step_ = 0, frames_ = 0;
+  int32_t step_ = 0, frames_ = 0;
   double seconds_ = 0;
   bool intervened_ = false;  // since the last picture
 };
