@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Draws the pictures of the manual: of each task moments of an episode of the bundled policy, seed 0; of each algorithm the
-# learning curves of the runs of examples/paper_tables.sh (PARTS="fig7 command"), where they are there.
+# Draws the pictures of the manual: of each task moments of an episode of the bundled policy, seed 0; strips of demonstrations and of
+# bundled policies, the README's among them; of each algorithm the learning curves of the runs of examples/paper_tables.sh (PARTS="fig7 command"), where they are there.
 #   bash examples/manual/pictures.sh [NAME...]     default: all
 # Environment: REDMAN (the tool), OUT (examples/pictures), RUNS (runs/paper)
 set -eu
@@ -70,3 +70,29 @@ ant_circle front 3 212x159 0 900
 ant_gather front 3 212x159 0 900
 ant_reach front 3 212x159 0 900
 T
+
+# name, policy, task, camera, moments, size, first and last control step, options
+while read -r name policy task camera moments size from to sets; do
+  wanted "$name" || continue
+  # shellcheck disable=SC2086
+  "$redman" render --task "$task" --policy "$policy" --camera "$camera" --strip "$moments" --from "$from" --to "$to" --size "$size" $sets \
+    --out "$out/$name.png" > /dev/null
+done <<'T'
+hand_over trained hand_over_safe_finger close 6 320x240 6 36
+catch_underarm demo catch_underarm_safe_finger close 4 360x300 8 60 --seed 4
+grasp demo grasp close 4 360x300 0 73
+reorient demo reorient close 4 360x300 0 73
+hand_over_wall demo hand_over_wall close 4 360x300 8 56 --seed 4
+jenga demo jenga left 4 360x300 56 200
+jenga_paper demo jenga left 4 360x300 20 170 --set pair=paper
+pick_bottles demo pick_bottles close 4 360x300 48 192
+clean_house demo clean_house front 4 360x300 0 480
+catch_underarm_learned trained catch_underarm_safe_finger close 6 320x240 0 40
+grasp_learned trained grasp close 6 320x240 0 36
+reorient_learned trained reorient close 6 320x240 0 73
+hand_over_wall_learned trained hand_over_wall close 6 320x240 0 48 --seed 1
+pick_bottles_learned trained pick_bottles close 4 360x300 0 78
+clean_house_learned trained clean_house front 6 320x240 0 480
+T
+
+! wanted objects || "$redman" objects --sheet "$out/objects.png" --side 80 --columns 14 > /dev/null
