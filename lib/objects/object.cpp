@@ -96,7 +96,7 @@ Finish finish_of(const ObjectMaterial& material) {
                    {"leather", Finish::kRubber},  {"felt", Finish::kCloth},    {"foam", Finish::kCloth},
                    {"cardboard", Finish::kCloth}};
   for (const auto& f : kFinishes)
-    if (same_name(f.name, material.name)) return f.finish;
+    if (material.name && same_name(f.name, material.name)) return f.finish;
   return Finish::kPaint;
 }
 

@@ -427,7 +427,7 @@ class Pool(Hinted):
         """A picture of one world: rgb [height][width][3] bytes; depth [height][width] in m, 0 where nothing is;
         segmentation [height][width], the number of a shape or -1. camera None: the task's first.
 
-        num_envs: worlds side by side in one scene, from env on, with the camera moved back until it sees them all; shape i of
+        num_envs: worlds side by side in one scene, from env on, with the camera moved back until all are in sight; shape i of
         world env + k is k * len(shapes) + i. look: "fine", for people, or "plain", as observations look, in half the time."""
         if what not in _PICTURE:
             raise ArgumentError(f"what: {what!r} is none of {', '.join(_PICTURE)}")
