@@ -84,7 +84,6 @@ if(TARGET redman_import)
   rdm_deb(import ${import} libs SUMMARY "safe dexterous manipulation (robots out of files)" TEXT "${text}\n.\nThis package \
 holds the library that reads robots: URDF, MJCF\nand redman's own text."
           DEPENDS "${library} (= ${PROJECT_VERSION})" CONTROL ${RDM_DEBIAN}/import/shlibs ${RDM_DEBIAN}/triggers)
-  set(CPACK_DEBIAN_IMPORT_PACKAGE_SHLIBDEPS ON)
   string(APPEND CPACK_DEBIAN_TOOLS_PACKAGE_DEPENDS ", ${import} (= ${PROJECT_VERSION})")
   string(APPEND CPACK_DEBIAN_DEV_PACKAGE_DEPENDS ", ${import} (= ${PROJECT_VERSION}), libtinyxml2-dev")
   file(WRITE ${RDM_DEBIAN}/import/shlibs "libredman_import ${RDM_ABI} ${import} (>= ${PROJECT_VERSION})\n")
@@ -101,7 +100,7 @@ the Python module, with environments for\nGymnasium and its like."
     set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "${import} (>= ${PROJECT_VERSION}), ${import} (<< ${next}~)")  # files of one's own
   endif()
 endif()
-set(CPACK_DEBIAN_TOOLS_PACKAGE_SHLIBDEPS ON)  # the library's are asked for in finish.cmake: cpack would add scripts
+set(CPACK_DEBIAN_TOOLS_PACKAGE_SHLIBDEPS ON)  # those of the libraries: finish.cmake
 
 # What the library promises to programs, and that the loader's cache must know it.
 file(WRITE ${RDM_DEBIAN}/shlibs "libredman ${RDM_ABI} ${library} (>= ${PROJECT_VERSION})\n")

@@ -30,8 +30,20 @@ file(GLOB library ${stage}/runtime/usr/lib/*/libredman.so.${CPACK_PACKAGE_VERSIO
 run(sh ${here}/symbols.sh ${library} ${CPACK_DEBIAN_RUNTIME_PACKAGE_NAME} ${CPACK_PACKAGE_VERSION}
     ${here}/../../../capi/abi ${CPACK_PACKAGE_DIRECTORY}/../debian/symbols)
 
+# What the two libraries ask for. Not by cpack, which would add scripts that call ldconfig, where the triggers do.
+get_filename_component(libraries ${library} DIRECTORY)
 file(WRITE ${stage}/debian/control "")
-execute_process(COMMAND dpkg-shlibdeps -O ${library} WORKING_DIRECTORY ${stage} OUTPUT_VARIABLE needs
-                OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+# needs(variable FILE): the packages of the libraries that it is linked to, but for those of this build
+function(needs variable file)
+  execute_process(COMMAND dpkg-shlibdeps -O --ignore-missing-info -l${libraries} ${file} WORKING_DIRECTORY ${stage}
+                  OUTPUT_VARIABLE out OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+  string(REGEX REPLACE ".*Depends=" "" out "${out}")
+  set(${variable} "${out}" PARENT_SCOPE)
+endfunction()
+needs(CPACK_DEBIAN_RUNTIME_PACKAGE_DEPENDS ${library})
+file(GLOB library ${stage}/import/usr/lib/*/libredman_import.so.${CPACK_PACKAGE_VERSION})
+if(library)
+  needs(own ${library})
+  string(APPEND CPACK_DEBIAN_IMPORT_PACKAGE_DEPENDS ", ${own}")
+endif()
 file(REMOVE_RECURSE ${stage}/debian)
-string(REGEX REPLACE ".*Depends=" "" CPACK_DEBIAN_RUNTIME_PACKAGE_DEPENDS "${needs}")
