@@ -10,7 +10,8 @@ namespace rdm {
 namespace {
 
 const AlgoRow* const kRows[] = {
-    &kPpo, &kTrpo, &kPpoLag, &kTrpoLag, &kCppoPid, &kCpo, &kPcpo, &kFocops, &kP3o, &kIpo,
+    &kPpo,    &kTrpo, &kPpoLag, &kTrpoLag, &kCppoPid,  &kCpo,   &kPcpo,
+    &kFocops, &kP3o,  &kIpo,    &kMappo,   &kMappoLag, &kHappo, &kMacpo,
 };
 
 }  // namespace

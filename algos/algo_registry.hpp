@@ -8,13 +8,16 @@ namespace rdm {
 
 // One per algorithm file.
 extern const AlgoRow kPpo, kTrpo, kPpoLag, kTrpoLag, kCppoPid, kCpo, kPcpo, kFocops, kP3o, kIpo;
+extern const AlgoRow kMappo, kMappoLag, kHappo, kMacpo;
 
 // The row of an algorithm whose class is T.
 template <class T, class Rows>
 constexpr AlgoRow make_algo_row(const char* name, const char* summary, const Rows& options, Costs costs,
-                                void (*adapt)(ResolvedAgentConfig&) = nullptr) {
+                                void (*adapt)(ResolvedAgentConfig&) = nullptr,
+                                const AlgoRow* alone = nullptr) {
   AlgoRow row{};
   row.adapt = adapt;
+  row.alone = alone;
   row.info = {name, summary, options.data(), static_cast<int32_t>(options.size())};
   row.costs = costs;
   row.measure = [](ResolvedAgentConfig&& resolved) -> size_t {

@@ -62,10 +62,43 @@ struct PolicyTensor {
   // for a policy that observes only a part of the row: `data` has the observed columns (rows, if cols is 1), then
   // those that do not belong to the row, such as features of points
   bool part = false;
-  float unseen = 0;                        // the value of all other columns
+  float unseen = 0;    // the value of all other columns
+  int32_t layer = -1;  // of groups: of which it has all, weights or else biases
+  bool weights = false;
   const int16_t* millimetres = nullptr;    // in the place of data: points of the example
   const unsigned char* numbers = nullptr;  // in the place of data: their classes, colours
 };
+
+// A layer of all groups as one layer of one network, whose other weights are 0: so whoever reads tensors needs no
+// groups. Outputs of the last one are in the order of the action, log deviations behind all means.
+void copy_groups(const PolicyView& v, const PolicyTensor& t, float* out) {
+  const auto cols = static_cast<size_t>(t.cols);
+  std::fill_n(out, static_cast<size_t>(t.rows) * cols, 0.0f);
+  const bool last = t.layer == v.actor.num_hidden;
+  size_t row = 0, col = 0;  // where the group's own begin
+  for (int32_t i = 0; i < v.num_groups; ++i) {
+    const ActorGroup& g = v.group[i];
+    const auto rows = static_cast<size_t>(g.shape.layer_out(t.layer)),
+               in = static_cast<size_t>(g.shape.layer_in(t.layer));
+    const auto count = static_cast<size_t>(g.count);
+    const float* from =
+        v.params + g.offset + (t.weights ? g.shape.weight_offset(t.layer) : g.shape.bias_offset(t.layer));
+    for (size_t r = 0; r < rows; ++r) {
+      const size_t at = !last       ? row + r
+                        : r < count ? static_cast<size_t>(g.first) + r
+                                    : static_cast<size_t>(v.action_dim() + g.first) + r - count;
+      if (!t.weights) {
+        out[at] = from[r];
+        continue;
+      }
+      for (size_t k = 0; k < in; ++k) {
+        const size_t to = t.layer > 0 ? col + k : g.columns ? static_cast<size_t>(g.columns[k]) : k;
+        out[at * cols + to] = from[r * in + k];
+      }
+    }
+    row += rows, col += in;
+  }
+}
 
 // All that the tensor is, [rows][cols].
 void copy_tensor(const PolicyView& v, const PolicyTensor& t, float* out) {
@@ -74,6 +107,7 @@ void copy_tensor(const PolicyView& v, const PolicyTensor& t, float* out) {
     out[i] = static_cast<float>(static_cast<double>(v.eyes.origin[i % 3]) + 0.001 * t.millimetres[i]);
   for (size_t i = 0; t.numbers && i < size; ++i) out[i] = t.numbers[i];
   if (t.millimetres || t.numbers) return;
+  if (t.layer >= 0) return copy_groups(v, t, out);
   if (!t.part) {
     std::copy(t.data, t.data + size, out);
     return;
@@ -136,6 +170,14 @@ bool tensor_at(const PolicyView& v, int32_t i, PolicyTensor* out) {
   if (i < 2 * s.num_layers()) {
     const int32_t l = i / 2;
     const bool part = l == 0 && v.columns;
+    if (v.num_groups) {
+      const auto all = [&](int32_t of_one) { return v.num_groups * of_one; };
+      const int32_t rows = l == s.num_hidden ? s.out : all(s.layer_out(l)),
+                    cols = l == 0 ? s.in : all(s.layer_in(l));
+      *out = {i % 2 ? kBiases[l] : kWeights[l], nullptr, rows, i % 2 ? 1 : cols};
+      out->layer = l, out->weights = i % 2 == 0;
+      return true;
+    }
     if (i % 2)
       *out = {kBiases[l], v.params + s.bias_offset(l), s.layer_out(l), 1};
     else
@@ -228,7 +270,7 @@ rdm_result rdm_policy_get_info(const rdm_policy* p, rdm_policy_info* io) {
     info.control_dt = v.control_dt;
     info.noise_correlation = v.noise_correlation;
     info.layout_hash = v.layout_hash;
-    info.num_params = v.actor.num_params() + v.eyes.num_params();
+    info.num_params = v.num_params() + v.eyes.num_params();
     info.task = v.task;
     info.activation = activation_name(v.actor.activation);
     info.num_points = v.eyes.points;

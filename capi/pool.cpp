@@ -68,9 +68,15 @@ rdm_spec spec_of(const Task& task, int32_t index, int32_t repeat) {
   return s;
 }
 
+int32_t group_sets(const Task& task) {
+  int32_t n = 0;
+  for (const char *key, *list; task.group_set_at(n, &key, &list);) ++n;
+  return n;
+}
+
 // The arrays that rdm_agent_config_for_pool lends out, and what pictures are made in.
 void carve(Arena& arena, const Task& task, const TaskInfo& info, rdm_pool* p) {
-  p->defaults = arena.make<rdm_option>(static_cast<size_t>(info.num_defaults) + 1);
+  p->defaults = arena.make<rdm_option>(static_cast<size_t>(info.num_defaults + group_sets(task)) + 1);
   p->initial_mean = arena.make<float>(static_cast<size_t>(task.action_dim()));
   p->cost_limits = arena.make<double>(static_cast<size_t>(info.num_costs));
   p->fields = arena.make<rdm_field>(task.fields().size());
@@ -86,8 +92,8 @@ size_t side_bytes(const Task& task, const TaskInfo& info) {
   return measure.used();
 }
 
-// The task's, with a decision rate that a pool can keep which does `repeat` control steps at a time.
-int32_t fill_defaults(const TaskInfo& info, int32_t repeat, rdm_option* out) {
+// The task's, with a decision rate that a pool can keep which does `repeat` control steps at a time, and its teams.
+int32_t fill_defaults(const Task& task, const TaskInfo& info, int32_t repeat, rdm_option* out) {
   int32_t n = 0;
   for (int32_t i = 0; i < info.num_defaults; ++i)
     if (repeat == 1 || !same_name(info.defaults[i].key, "action_repeat"))
@@ -95,6 +101,7 @@ int32_t fill_defaults(const TaskInfo& info, int32_t repeat, rdm_option* out) {
   const int32_t own = decision_steps(info);
   if (repeat > 1)
     out[n++] = {"action_repeat", nullptr, static_cast<double>(own % repeat == 0 ? own : repeat)};
+  for (int32_t i = 0; task.group_set_at(i, &out[n].key, &out[n].text); ++i) ++n;
   return n;
 }
 
@@ -103,7 +110,7 @@ void fill_side(rdm_pool* p) {
   const TaskInfo& info = task_at(p->pool->task_index());
   p->arena = Arena(p->hooks, side_bytes(task, info));
   carve(p->arena, task, info, p);
-  p->num_defaults = fill_defaults(info, p->pool->repeat(), p->defaults);
+  p->num_defaults = fill_defaults(task, info, p->pool->repeat(), p->defaults);
   task.initial_mean(p->initial_mean);
   for (size_t i = 0; i < task.fields().size(); ++i) {
     const rdm_field_info f = field_of(task, static_cast<int32_t>(i));

@@ -23,14 +23,22 @@ bool same_network(const PointNetShape& a, const PointNetShape& b) {
          std::equal(a.mlp.hidden, a.mlp.hidden + a.mlp.num_hidden, b.mlp.hidden);
 }
 
+bool same_group(const ActorGroup& a, const ActorGroup& b) {
+  return std::strcmp(a.name, b.name) == 0 && a.first == b.first && a.count == b.count &&
+         a.shape.in == b.shape.in && (a.columns != nullptr) == (b.columns != nullptr) &&
+         (!a.columns || std::equal(a.columns, a.columns + a.shape.in, b.columns));
+}
+
 }  // namespace
 
 size_t Agent::memory(const AgentConfig& config) {
   ResolvedAgentConfig resolved = resolve_config(config);
   const AlgoRow& row = *resolved.row;
-  const size_t held =
-      resolved.options.held_bytes() +
-      (resolved.actor_columns.capacity() + resolved.critic_columns.capacity()) * sizeof(int32_t);
+  size_t held = resolved.options.held_bytes() +
+                (resolved.actor_columns.capacity() + resolved.critic_columns.capacity()) * sizeof(int32_t) +
+                resolved.groups.capacity() * sizeof(ActorGroup) +
+                resolved.group_specs.capacity() * sizeof(GroupSpec);
+  for (const GroupSpec& g : resolved.group_specs) held += g.columns.capacity() * sizeof(int32_t);
   return row.measure(std::move(resolved)) + held + Workers::memory(config.hooks, config.num_threads);
 }
 
@@ -257,6 +265,9 @@ void Agent::need_same_shape(const PolicyView& p) const {
   if (!std::equal(eyes.origin, eyes.origin + 3, theirs.origin) || eyes.range != theirs.range)
     differ("encoder_origin, or encoder_range,");
   const int32_t entries = nets_.actor_entries();
+  if (p.num_groups != nets_.num_groups) differ("the number of groups");
+  for (int32_t i = 0; i < p.num_groups; ++i)
+    if (!same_group(p.group[i], nets_.group[i])) differ("groups");
   if (p.actor.in != actor.in || (p.columns != nullptr) != (columns != nullptr) ||
       (columns && !std::equal(columns, columns + entries, p.columns)))
     differ("actor_obs");
@@ -269,12 +280,11 @@ void Agent::load_policy(const PolicyView& p, double samples) {
   need_idle("load_policy");
   if (!(samples >= 2 && samples <= 1e12)) fail(Code::kRange, "samples: %g is outside [2, 1e12]", samples);
   need_same_shape(p);
-  const MlpShape& actor = nets_.shape[Networks::kActor];
   const int32_t* columns = nets_.columns[Networks::kActor];
   const PointNetShape& eyes = nets_.eyes;
   const int32_t entries = nets_.actor_entries();
   Normalizer& n = collector_.normalizer();
-  std::copy_n(p.params, actor.num_params(), nets_.net(Networks::kActor));
+  std::copy_n(p.params, p.num_params(), nets_.net(Networks::kActor));
   if (eyes.points) std::copy_n(p.eyes_params, eyes.num_params(), nets_.eyes_net());
   if (!nets_.state_std()) std::copy_n(p.log_std, nets_.action_dim, nets_.log_std());
   clamp_log_std(nets_);
@@ -282,7 +292,7 @@ void Agent::load_policy(const PolicyView& p, double samples) {
   Adam& adam = nets_.block[Networks::kActor].adam;
   std::fill_n(adam.m, adam.size, 0.0f);
   std::fill_n(adam.v, adam.size, 0.0f);
-  adam.t = 0;
+  restart_steps(nets_);
   if (!collector_.normalizes()) return;
   collector_.usual().set(p.usual);
   n.count = samples;
@@ -367,6 +377,7 @@ PolicyView Agent::policy_view() {
   v.actor = nets_.shape[Networks::kActor];
   v.columns = nets_.columns[Networks::kActor];
   v.row_dim = nets_.obs_dim;
+  v.group = nets_.group, v.num_groups = nets_.num_groups;
   v.params = nets_.kept_actor();
   v.eyes = nets_.eyes;
   v.eyes_params = v.params + nets_.eyes_offset();

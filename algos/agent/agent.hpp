@@ -150,6 +150,11 @@ class Agent {
   // A step of the policy over the whole batch, before the passes: job after job until there is none.
   virtual void begin_step() {}
   virtual Job step_on() { return {}; }
+  // Rounds of all passes, in which the policy learns: each of one group where the groups of a team learn in turn. The
+  // critics learn in the first.
+  virtual int32_t turns() const { return 1; }
+  // Before the passes of a turn, the first included; a job that they wait for.
+  virtual Job begin_turn(int32_t) { return {}; }
   // What is measured of each minibatch of the policy's passes before its gradient, and what follows from it.
   virtual Job measure_minibatch(const Batch&) { return {}; }
   virtual void begin_minibatch(const Surrogate&) {}
@@ -203,9 +208,10 @@ class Agent {
   struct Run {
     EpisodeStats stats;
     EpochTotals totals;
-    bool warm = false;      // one of the first epochs, in which the critics learn alone
-    int64_t skipped = 0;    // gradients, before it
-    int32_t minibatch = 0;  // that comes next
+    bool warm = false;                   // one of the first epochs, in which the critics learn alone
+    int64_t skipped = 0;                 // gradients, before it
+    int32_t turn = -1, turn_passes = 0;  // -1: before the first
+    int32_t minibatch = 0;               // that comes next
     Batch batch;
     int32_t block = 0, row = 0;  // that spread_on comes to next
     BatchSums last, all;         // of this pass so far, of those before

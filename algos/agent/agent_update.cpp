@@ -89,9 +89,17 @@ void Agent::unit(bool whole) {
         if (!job_) phase_ = Phase::kPass;
         break;
       case Phase::kPass:
-        if (learned_.passes < resolved_.shared.passes) return begin_pass();
-        phase_ = Phase::kSpread;
-        break;
+        if (run_.turn < 0 || run_.turn_passes == resolved_.shared.passes) {
+          if (++run_.turn == (run_.warm ? 1 : turns())) {
+            nets_.focus = -1;
+            phase_ = Phase::kSpread;
+          } else {
+            run_.turn_passes = 0;
+            if (!run_.warm) job_ = begin_turn(run_.turn);
+          }
+          break;
+        }
+        return begin_pass();
       case Phase::kMinibatch:
         if (!next_minibatch()) {
           end_pass(policy);
@@ -105,7 +113,7 @@ void Agent::unit(bool whole) {
           begin_minibatch(learner_.measured());
           imitation_.draw(run_.batch.rows);
         }
-        job_ = learner_.begin_gradient(policy, true, run_.batch);
+        job_ = learner_.begin_gradient(policy, run_.turn == 0, run_.batch);
         phase_ = Phase::kAdam;
         break;
       case Phase::kAdam:
@@ -115,7 +123,8 @@ void Agent::unit(bool whole) {
         return;
       case Phase::kStop: {
         const bool far = learner_.measured().kl > resolved_.shared.early_stop_kl;
-        phase_ = far ? Phase::kSpread : Phase::kPass;
+        if (far) run_.turn_passes = resolved_.shared.passes;
+        phase_ = Phase::kPass;
         break;
       }
       case Phase::kSpread:
@@ -170,6 +179,7 @@ bool Agent::next_minibatch() {
 void Agent::end_pass(const PolicyLoss* policy) {
   run_.all += run_.last;
   ++learned_.passes;
+  ++run_.turn_passes;
   phase_ = Phase::kPass;
   if (!policy || resolved_.shared.early_stop_kl <= 0) return;
   job_ = learner_.begin_measure(whole_batch());
@@ -182,6 +192,8 @@ void Agent::end_update() {
     const double count = valid_rows();
     learned_.last_kl = run_.last.kl / count;
     learned_.mean = run_.all.scaled(1 / (count * learned_.passes));
+    const double rounds = warm ? 1 : turns();
+    learned_.mean.reward_loss *= rounds, learned_.mean.cost_loss *= rounds;
   }
   if (!warm && valid_rows() > 0) report(learned_);
   const int64_t skipped = learner_.skipped() - run_.skipped;
@@ -208,6 +220,7 @@ void Agent::end_run() {
   phase_ = Phase::kIdle;
   job_ = Job();
   nets_.updating = false;
+  nets_.focus = -1;
 }
 
 // Of an update that has begun: the actor is what it was, so a policy file of this generation is this one's.

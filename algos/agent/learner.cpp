@@ -6,7 +6,6 @@
 #include "algos/imitation/imitation.hpp"
 #include "base/elementary.hpp"
 #include "nn/dot.hpp"
-#include "nn/gaussian.hpp"
 
 namespace rdm {
 
@@ -34,6 +33,8 @@ PolicyChunk Learner::chunk_of(Workspace& workspace, const int32_t* order, int32_
   PolicyChunk p{rollout_, order,          rows, workspace.out,  log_std_,
                 scale_,   workspace.dout, grad, &workspace.sums};
   p.mean_step = static_cast<size_t>(nets_->shape[Networks::kActor].out);
+  p.first_part = static_cast<size_t>(nets_->first_group()),
+  p.last_part = static_cast<size_t>(nets_->last_group());
   if (nets_->state_std()) {
     const size_t dim = rollout_->action_dim;
     p.log_std = workspace.out + dim, p.dlog_std = workspace.dout + dim, p.std_step = p.mean_step;
@@ -158,8 +159,12 @@ double Learner::critic_gradient(Workspace& workspace, Networks::Index net, const
 
 void Learner::add_penalties() {
   const auto bonus = policy_ && policy_->explores() ? static_cast<float>(shared().entropy) : 0.0f;
+  const auto first_action = static_cast<size_t>(nets_->first_action()),
+             last_action = static_cast<size_t>(nets_->last_action());
   for (size_t j = 0; policy_ && !nets_->state_std() && j < resolved_->action_dim(); ++j)
-    grad_[j] = shared().learn_std && !shared().linear_std ? grad_[j] - bonus : 0;
+    grad_[j] = shared().learn_std && !shared().linear_std && j >= first_action && j < last_action
+                   ? grad_[j] - bonus
+                   : 0;
   if (!critics_ || shared().critic_l2 == 0) return;
   const auto twice = static_cast<float>(2 * shared().critic_l2);
   const size_t first = nets_->block[Networks::kReward].offset;
@@ -194,6 +199,7 @@ void Learner::step(double actor_rate, double actor_share) {
   workers_->spread(last - first, [&](int32_t i) {
     const int32_t net = first + i;
     Block& b = nets_->block[net];
+    if (net == Networks::kActor && nets_->num_groups) return;
     const double rate = net == Networks::kActor ? actor_rate : critic_rate;
     steps[net] = adam_begin(b.adam, nets_->params + b.offset, grad_ + b.offset, rate, bound);
   });
@@ -203,13 +209,37 @@ void Learner::step(double actor_rate, double actor_share) {
       adam_range(steps[net], std::max(low, b.offset) - b.offset, std::max(high, b.offset) - b.offset);
     }
   });
+  if (first == Networks::kActor && nets_->num_groups) step_groups(actor_rate, bound);
   for (int32_t net = first; net < last; ++net) skipped_ += !std::isfinite(steps[net].norm);
   if (policy_) clamp_log_std(*nets_);
 }
 
+// A step of each group that learns, its norm, its count of steps and its bound its own: the entries of the log
+// deviations, then the network.
+void Learner::step_groups(double rate, double bound) {
+  const int32_t first = nets_->first_group();
+  double norms[kMaxGroups];
+  workers_->spread(nets_->last_group() - first, [&](int32_t i) {
+    const int32_t number = first + i;
+    const ActorGroup& g = nets_->group[number];
+    const Block& actor = nets_->block[Networks::kActor];
+    const size_t net = nets_->std_size + g.offset, std = static_cast<size_t>(g.first);
+    const size_t size = g.shape.num_params(), stds = nets_->state_std() ? 0 : static_cast<size_t>(g.count);
+    const auto part = [&](size_t at, size_t count) {
+      return Adam{count, actor.adam.m + at, actor.adam.v + at, nets_->group_steps[number]};
+    };
+    Adam of_net = part(net, size), of_std = part(std, stds);
+    const double norm = std::sqrt(sum_squares(grad_ + std, stds) + sum_squares(grad_ + net, size));
+    norms[i] = norm;
+    adam_range(adam_begin(of_net, nets_->params + net, grad_ + net, norm, rate, bound), 0, size);
+    adam_range(adam_begin(of_std, nets_->params + std, grad_ + std, norm, rate, bound), 0, stds);
+    nets_->group_steps[number] = of_net.t;
+  });
+  for (int32_t i = 0; first + i < nets_->last_group(); ++i) skipped_ += !std::isfinite(norms[i]);
+}
+
 void Learner::measure_rows(Workspace& workspace, const int32_t* order, int32_t rows) const {
   const Rollout& r = *rollout_;
-  const auto dim = static_cast<int32_t>(r.action_dim);
   const auto costs = static_cast<size_t>(r.num_costs);
   gather_obs(r, order, 1, rows, workspace.obs);
   expect_actions(r, order, rows);
@@ -219,9 +249,8 @@ void Learner::measure_rows(Workspace& workspace, const int32_t* order, int32_t r
   for (size_t i = 0; i < static_cast<size_t>(rows); ++i) {
     const auto at = static_cast<size_t>(order[i]);
     const float *mean = chunk.mean_of(i), *log_std = chunk.log_std_of(i);
-    workspace.surrogate.kl +=
-        static_cast<double>(gaussian_kl(r.mean + at * r.action_dim, r.log_std_of(at), mean, log_std, dim));
-    const double ratio = sample_ratio(r, at, mean, log_std);
+    workspace.surrogate.kl += sample_kl(r, at, chunk.first_part, chunk.last_part, mean, log_std);
+    const double ratio = sample_ratio(r, at, chunk.first_part, chunk.last_part, mean, log_std);
     workspace.surrogate.gain += ratio * static_cast<double>(r.gain[at] + r.linear[at]);
     const double bounded =
         std::clamp(ratio, 1.0 - static_cast<double>(clip_), 1.0 + static_cast<double>(clip_));
@@ -259,6 +288,32 @@ bool Learner::advance_measure(bool whole) {
   end_measure();
   if (with_term_ && imitation_ && imitation_->active()) term_ = imitation_->begin(nullptr);
   return !term_;
+}
+
+Job Learner::begin_weigh(const Batch& batch, int32_t group) {
+  refresh_log_std();
+  sweep_ = Sweep(batch);
+  weighed_ = static_cast<size_t>(group);
+  return Job::of<&Learner::advance_weigh>(this);
+}
+
+bool Learner::advance_weigh(bool) {
+  const Rollout& r = *rollout_;
+  const auto costs = static_cast<size_t>(r.num_costs);
+  workers_->cut(sweep_, resolved_->chunk_rows);
+  workers_->each(sweep_, [&](Workspace& w, const Chunk& c) {
+    gather_obs(r, c.order, 1, c.rows, w.obs);
+    nets_->forward_actor(w.obs, r.clouds(c.order), c.rows, w.actor, w.out);
+    const PolicyChunk chunk = chunk_of(w, c.order, c.rows, nullptr);
+    for (size_t i = 0; i < static_cast<size_t>(c.rows); ++i) {
+      const auto at = static_cast<size_t>(c.order[i]);
+      const auto ratio =
+          static_cast<float>(part_ratio(r, at, weighed_, chunk.mean_of(i), chunk.log_std_of(i)));
+      r.gain[at] *= ratio, r.linear[at] *= ratio;
+      for (size_t k = 0; k < costs; ++k) r.cost_advantage[at * costs + k] *= ratio;
+    }
+  });
+  return sweep_.over();
 }
 
 void Learner::end_measure() {

@@ -41,6 +41,8 @@ struct PolicyChunk {
   float* dlog_std = nullptr;       // added to: scale d(loss)/d(log_std) [action_dim]
   BatchSums* sums = nullptr;       // added to: loss, kl, clipped
   size_t mean_step = 0, std_step = 0;
+  // Groups of the actor that learn, [first_part, last_part): each has a ratio of its own. One where all is one network.
+  size_t first_part = 0, last_part = 1;
 
   const float* mean_of(size_t i) const { return mean + i * mean_step; }
   const float* log_std_of(size_t i) const { return log_std + i * std_step; }
@@ -92,6 +94,9 @@ class Learner {
     begin_measure(batch, clip).finish();
     return measured_;
   }
+  // Multiplies the advantages of the listed rows, those that the policy climbs and those of costs, by the probability
+  // ratio of one group's actions: then others of the team learn from what they are worth beside its new policy.
+  Job begin_weigh(const Batch& batch, int32_t group);
   double kl(const Batch& batch) { return measure(batch).kl; }
   // Steps that were left out so far.
   int64_t skipped() const { return skipped_; }
@@ -109,11 +114,13 @@ class Learner {
   void measure_rows(Workspace& workspace, const int32_t* order, int32_t rows) const;
   bool advance_gradient(bool whole);
   bool advance_measure(bool whole);
+  bool advance_weigh(bool whole);
   // Networks [first, last) of one chunk.
   void chunk_gradient(Workspace& workspace, const Chunk& chunk, int32_t first, int32_t last) const;
   void end_gradient();
   void end_measure();
   void add_penalties();
+  void step_groups(double rate, double bound);
   double joint_scale(int32_t first, int32_t last) const;
   BatchSums sums_of_blocks();
 
@@ -134,7 +141,8 @@ class Learner {
   float scale_ = 1;                                 // 1 / rows of the batch
   float clip_ = 0;
   bool with_term_ = false;
-  Job term_;  // behind the rows: the imitation term's
+  size_t weighed_ = 0;  // group
+  Job term_;            // behind the rows: the imitation term's
   BatchSums sums_;
   Surrogate measured_;
 

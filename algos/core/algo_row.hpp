@@ -18,6 +18,8 @@ struct AlgoRow {
   Agent* (*make)(const HostHooks& hooks, ResolvedAgentConfig&& resolved);
   void (*end)(Agent* agent);
   void (*adapt)(ResolvedAgentConfig& resolved);  // defaults that hang on the limits, by set_default; or null
+  // The algorithm that it is for one agent: what tasks and presets set for that one holds for it too; or null.
+  const AlgoRow* alone = nullptr;
 };
 const AlgoRow& algo_row(int32_t index);
 

@@ -19,7 +19,7 @@ Workspace carve_workspace(Arena& arena, const ResolvedAgentConfig& resolved, siz
   const auto rows = static_cast<size_t>(workspace.rows);
   const auto widest = static_cast<size_t>(std::max(resolved.actor.out, resolved.cost_critic.out));
   workspace.actor = carve_actor_scratch(arena, resolved, workspace.rows);
-  workspace.critic = covers(resolved.actor, resolved.cost_critic)
+  workspace.critic = resolved.groups.empty() && covers(resolved.actor, resolved.cost_critic)
                          ? workspace.actor
                          : carve_mlp_scratch(arena, resolved.cost_critic, workspace.rows);
   const size_t picked = resolved.critic_columns.size();

@@ -9,7 +9,8 @@
 namespace rdm {
 namespace {
 constexpr const char* kNames[] = {"actor", "reward_critic", "cost_critic"};
-constexpr uint32_t kEyesStream = 3;  // of initial weights, behind those of the three networks
+constexpr uint32_t kEyesStream = 3;    // of initial weights, behind those of the three networks
+constexpr uint32_t kGroupsStream = 4;  // of the second group's, and on; the first has the actor's
 
 // Bound on what a network of a loaded state may give: far beyond any that learns, and a float still holds its
 // square.
@@ -41,6 +42,10 @@ Networks carve_networks(Arena& arena, const ResolvedAgentConfig& resolved) {
   n.columns[Networks::kActor] = list(resolved.actor_columns);
   n.columns[Networks::kReward] = n.columns[Networks::kCost] = list(resolved.critic_columns);
   n.obs_dim = resolved.config.obs_dim;
+  n.num_groups = resolved.num_groups();
+  n.group = n.num_groups ? resolved.groups.data() : nullptr;
+  n.group_steps = arena.make<int64_t>(static_cast<size_t>(n.num_groups));
+  n.actor_params = resolved.actor_params();
   n.eyes = resolved.eyes;
   n.frozen = resolved.frozen;
   n.count = resolved.num_limited > 0 ? 3 : 2;
@@ -53,7 +58,7 @@ Networks carve_networks(Arena& arena, const ResolvedAgentConfig& resolved) {
   for (int32_t i = 0; i < n.count; ++i) {
     n.block[i].offset = n.size;
     n.block[i].size = n.shape[i].num_params();
-    if (i == Networks::kActor) n.block[i].size += n.std_size + n.eyes.num_params();
+    if (i == Networks::kActor) n.block[i].size = n.actor_params + n.std_size + n.eyes.num_params();
     n.size += (n.block[i].size + 15) / 16 * 16;
   }
   n.params = arena.make<float>(n.size);
@@ -70,6 +75,20 @@ Networks carve_networks(Arena& arena, const ResolvedAgentConfig& resolved) {
 ActorScratch carve_actor_scratch(Arena& arena, const ResolvedAgentConfig& resolved, int32_t rows) {
   ActorScratch s;
   const auto n = static_cast<size_t>(rows);
+  if (const auto groups = static_cast<size_t>(resolved.num_groups())) {
+    s.rows = rows;
+    s.group = arena.make<MlpScratch>(groups);
+    int32_t widest = 0;
+    for (size_t g = 0; g < groups; ++g) {
+      const ActorGroup& group = resolved.groups[g];
+      MlpScratch own = carve_mlp_scratch(arena, group.shape, rows);
+      own.picked = arena.make<float>(group.columns ? n * static_cast<size_t>(group.shape.in) : 0);
+      if (s.group) s.group[g] = own;
+      widest = std::max(widest, group.shape.out);
+    }
+    s.part = arena.make<float>(n * static_cast<size_t>(widest));
+    return s;
+  }
   static_cast<MlpScratch&>(s) = carve_mlp_scratch(arena, resolved.actor, rows);
   if (!resolved.actor_columns.empty() || resolved.sees())
     s.picked = arena.make<float>(n * static_cast<size_t>(resolved.actor.in));
@@ -83,6 +102,7 @@ ActorScratch carve_actor_scratch(Arena& arena, const ResolvedAgentConfig& resolv
 
 void Networks::forward_actor_with(const float* weights, const float* x, const PointRows& clouds, int32_t rows,
                                   const ActorScratch& scratch, float* y) const {
+  if (num_groups) return forward_groups(weights, x, rows, scratch, y);
   if (!eyes.points) return forward_with(weights, kActor, x, rows, scratch, y);
   const size_t in = feature_step(), own = static_cast<size_t>(actor_entries()), width = in - own;
   for (size_t i = 0; i < static_cast<size_t>(rows); ++i) {
@@ -102,8 +122,34 @@ void Networks::forward_actor_with(const float* weights, const float* x, const Po
   if (state_std()) bound_std(rows, y);
 }
 
+// Of all groups, whichever learns: what the others give stays what it is.
+void Networks::forward_groups(const float* weights, const float* x, int32_t rows, const ActorScratch& scratch,
+                              float* y) const {
+  const auto width = static_cast<size_t>(shape[kActor].out);
+  for (int32_t i = 0; i < num_groups; ++i) {
+    const ActorGroup& g = group[i];
+    const MlpScratch& own = scratch.group[i];
+    if (g.columns) pick_columns(x, rows, obs_dim, g.columns, g.shape.in, own.picked);
+    mlp_forward(g.shape, weights + g.offset, g.columns ? own.picked : x, rows, own, scratch.part);
+    spread_outputs(g, scratch.part, rows, width, y);
+  }
+  if (state_std()) bound_std(rows, y);
+}
+
 void Networks::backward_actor(const float* x, const PointRows& clouds, int32_t rows,
                               const ActorScratch& scratch, const float* dy, float* grad) const {
+  for (int32_t i = 0; i < num_groups; ++i) {
+    const ActorGroup& g = group[i];
+    const MlpScratch& own = scratch.group[i];
+    float* const to = grad + net_offset(kActor) + g.offset;
+    if (!learns(i)) {
+      std::fill_n(to, g.shape.num_params(), 0.0f);
+      continue;
+    }
+    gather_outputs(g, dy, rows, static_cast<size_t>(shape[kActor].out), scratch.part);
+    mlp_backward(g.shape, net(kActor) + g.offset, g.columns ? own.picked : x, rows, own, scratch.part, to);
+  }
+  if (num_groups) return;
   if (!eyes.points) return backward(kActor, x, rows, scratch, dy, grad);
   float* const net_grad = grad + net_offset(kActor);
   float* const eyes_grad = net_grad + eyes_offset();
@@ -118,6 +164,17 @@ void Networks::backward_actor(const float* x, const PointRows& clouds, int32_t r
 
 void Networks::tangent_actor(const float* direction, const float* x, const PointRows& clouds, int32_t rows,
                              const ActorScratch& scratch, float* dy) const {
+  for (int32_t i = 0; i < num_groups; ++i) {
+    const ActorGroup& g = group[i];
+    const MlpScratch& own = scratch.group[i];
+    if (learns(i))
+      mlp_tangent(g.shape, net(kActor) + g.offset, direction + g.offset, g.columns ? own.picked : x, rows,
+                  own, scratch.part);
+    else
+      std::fill_n(scratch.part, static_cast<size_t>(rows) * static_cast<size_t>(g.shape.out), 0.0f);
+    spread_outputs(g, scratch.part, rows, static_cast<size_t>(shape[kActor].out), dy);
+  }
+  if (num_groups) return;
   if (!eyes.points) return tangent(kActor, direction, x, rows, scratch, dy);
   if (!frozen)
     pointnet_tangent(eyes, eyes_net(), direction + eyes_offset(), clouds, rows, scratch.eyes,
@@ -130,19 +187,30 @@ void init_networks(const Networks& n, const ResolvedAgentConfig& resolved) {
   for (int32_t i = 0; i < n.count; ++i) {
     Stream stream(resolved.config.seed, static_cast<uint32_t>(i), Purpose::kInit);
     const double last = i == Networks::kActor ? resolved.shared.last_layer_scale : 1;
-    mlp_init(n.shape[i], stream, static_cast<float>(last), n.net(i));
+    if (i > 0 || !n.num_groups) mlp_init(n.shape[i], stream, static_cast<float>(last), n.net(i));
+  }
+  const auto last_scale = static_cast<float>(resolved.shared.last_layer_scale);
+  for (int32_t g = 0; g < n.num_groups; ++g) {
+    const uint32_t number = g == 0 ? 0 : kGroupsStream + static_cast<uint32_t>(g) - 1;
+    Stream stream(resolved.config.seed, number, Purpose::kInit);
+    mlp_init(n.group[g].shape, stream, last_scale, n.net(Networks::kActor) + n.group[g].offset);
   }
   if (n.eyes.points) {
     Stream stream(resolved.config.seed, kEyesStream, Purpose::kInit);
     mlp_init(n.eyes.mlp, stream, 1, n.eyes_net());
   }
-  const MlpShape& actor = n.shape[Networks::kActor];
-  float* bias = n.net(Networks::kActor) + actor.bias_offset(actor.num_hidden);
-  float* log_std = n.state_std() ? bias + n.action_dim : n.log_std();
-  for (int32_t j = 0; j < n.action_dim; ++j) {
-    bias[j] = resolved.config.initial_mean ? resolved.config.initial_mean[j] : 0;
-    log_std[j] = static_cast<float>(elementary::log(resolved.shared.init_std));
-  }
+  const auto first_actions = [&](const MlpShape& actor, float* net, int32_t first, int32_t count) {
+    float* bias = net + actor.bias_offset(actor.num_hidden);
+    float* log_std = n.state_std() ? bias + count : n.log_std() + first;
+    for (int32_t j = 0; j < count; ++j) {
+      bias[j] = resolved.config.initial_mean ? resolved.config.initial_mean[first + j] : 0;
+      log_std[j] = static_cast<float>(elementary::log(resolved.shared.init_std));
+    }
+  };
+  float* const actor = n.net(Networks::kActor);
+  if (!n.num_groups) first_actions(n.shape[Networks::kActor], actor, 0, n.action_dim);
+  for (int32_t g = 0; g < n.num_groups; ++g)
+    first_actions(n.group[g].shape, actor + n.group[g].offset, n.group[g].first, n.group[g].count);
 }
 
 void average_actor(const Networks& n) {
@@ -157,6 +225,11 @@ void restart_average(const Networks& n) {
   if (!n.average) return;
   *n.averaged = 0;
   std::copy_n(n.params, n.block[Networks::kActor].size, n.average);
+}
+
+void restart_steps(Networks& n) {
+  n.block[Networks::kActor].adam.t = 0;
+  std::fill_n(n.group_steps, n.num_groups, int64_t{0});
 }
 
 void keep_actor(const Networks& n) {
@@ -199,7 +272,8 @@ void schedule_std(const Networks& n, const SharedOptions& o, int32_t done) {
 
 int32_t Networks::num_tensors() const {
   int32_t tensors = state_std() ? 0 : 1;
-  for (int32_t i = 0; i < count; ++i) tensors += 2 * shape[i].num_layers();
+  for (int32_t g = 0; g < num_groups; ++g) tensors += 2 * group[g].shape.num_layers();
+  for (int32_t i = num_groups ? 1 : 0; i < count; ++i) tensors += 2 * shape[i].num_layers();
   return tensors + (eyes.points ? 2 * eyes.mlp.num_layers() : 0);
 }
 
@@ -211,17 +285,23 @@ void Networks::visit(StateIo& io) {
   };
   io.section("NETS");
   const StateView<float> p = io.numbers(params, size, -kMaxOutput, kMaxOutput);
+  // Bound on what the actor gives, whose networks begin at `at`.
+  const auto actor_bound = [&](const StateView<float>& list, size_t at) {
+    if (!num_groups) return mlp_bound(shape[kActor], From{list, at}, input_of(list, at));
+    double most = 0;
+    for (int32_t g = 0; g < num_groups; ++g)
+      most = std::max(most, mlp_bound(group[g].shape, From{list, at + group[g].offset}, input_bound));
+    return most;
+  };
   for (int32_t i = 0; p && i < count; ++i)
-    io.require(mlp_bound(shape[i], From{p, net_offset(i)},
-                         i == kActor ? input_of(p, std_size) : input_bound) <= kMaxOutput,
+    io.require((i == kActor ? actor_bound(p, std_size)
+                            : mlp_bound(shape[i], From{p, net_offset(i)}, input_bound)) <= kMaxOutput,
                "a network whose outputs may be too large");
   if (average) {
     io.section("MEAN");
     io.counter(*averaged);
     const StateView<float> a = io.numbers(average, block[kActor].size, -kMaxOutput, kMaxOutput);
-    if (a)
-      io.require(mlp_bound(shape[kActor], From{a, std_size}, input_of(a, std_size)) <= kMaxOutput,
-                 "an average whose outputs may be too large");
+    if (a) io.require(actor_bound(a, std_size) <= kMaxOutput, "an average whose outputs may be too large");
   }
   io.section("ADAM");
   for (int32_t i = 0; i < count; ++i) {
@@ -230,6 +310,8 @@ void Networks::visit(StateIo& io) {
     const StateView<float> m = io.numbers(a.m, a.size, -1e20, 1e20), v = io.numbers(a.v, a.size, 0, 1e38);
     if (m) io.require(moments_agree(m, v, a.size), "moments that no gradients can give");
   }
+  if (num_groups) io.section("GRPS");
+  for (int32_t g = 0; g < num_groups; ++g) io.counter(group_steps[g]);
 }
 
 bool find_tensor(const Networks& n, int32_t index, char* name, TensorInfo* out) {
@@ -249,7 +331,17 @@ bool find_tensor(const Networks& n, int32_t index, char* name, TensorInfo* out) 
     std::snprintf(name, kTensorNameSize, "actor.log_std");
     return set(n.action_dim, 1, n.log_std());
   }
-  for (int32_t i = 0; i < n.count; ++i) {
+  for (int32_t g = 0; g < n.num_groups; ++g) {
+    const MlpShape& s = n.group[g].shape;
+    const int32_t tensors = 2 * s.num_layers();
+    if (index < tensors) {
+      char net[kGroupNameSize + 8];
+      std::snprintf(net, sizeof net, "actor.%s", n.group[g].name);
+      return layer(net, s, n.net(Networks::kActor) + n.group[g].offset);
+    }
+    index -= tensors;
+  }
+  for (int32_t i = n.num_groups ? 1 : 0; i < n.count; ++i) {
     const MlpShape& s = n.shape[i];
     const int32_t tensors = 2 * s.num_layers();
     if (index >= tensors) {

@@ -4,6 +4,9 @@
 // the encoder's parameters stand behind the actor's network, in the same block, and learn with it, or with
 // encoder_frozen stay as they are. Critics see rows alone.
 //
+// An actor in groups (option groups) is a network for each, one behind the other in the same block; the log deviations
+// before them are in the order of the actions. A gradient or a step may be of one group alone: `focus`.
+//
 // With std_mode=state there is no such deviation: the actor's network gives, behind each row's means, its log
 // deviations.
 #pragma once
@@ -22,8 +25,10 @@ struct Block {
 // Scratch of an actor: what its eyes need too. picked: the rows that its network sees, with features.
 struct ActorScratch : MlpScratch {
   PointNetScratch eyes;
-  int32_t* winner = nullptr;   // [rows][features]
-  float* dfeatures = nullptr;  // [rows][features]
+  int32_t* winner = nullptr;    // [rows][features]
+  float* dfeatures = nullptr;   // [rows][features]
+  MlpScratch* group = nullptr;  // [groups], of an actor in groups
+  float* part = nullptr;        // [rows][widest output of a group]
 };
 ActorScratch carve_actor_scratch(Arena& arena, const ResolvedAgentConfig& resolved, int32_t rows);
 
@@ -32,8 +37,13 @@ ActorScratch carve_actor_scratch(Arena& arena, const ResolvedAgentConfig& resolv
 struct Networks {
   enum Index { kActor, kReward, kCost };
   MlpShape shape[3];
-  const int32_t* columns[3] = {};  // [shape.in] entries of a row that the network sees; null: all
-  int32_t obs_dim = 0;             // of a row
+  const int32_t* columns[3] = {};     // [shape.in] entries of a row that the network sees; null: all
+  int32_t obs_dim = 0;                // of a row
+  const ActorGroup* group = nullptr;  // [num_groups] of the actor; none: it is one network
+  int32_t num_groups = 0;
+  int64_t* group_steps = nullptr;  // [num_groups] of Adam
+  int32_t focus = -1;              // the group that learns now, -1: all
+  size_t actor_params = 0;         // of the actor's networks, its eyes apart
   PointNetShape eyes;              // of the actor; points 0: none
   bool frozen = false;             // eyes do not learn
   Block block[3];
@@ -63,7 +73,14 @@ struct Networks {
   const float* kept_log_std() const { return average ? average : updating ? before : params; }
   const float* kept_actor() const { return kept_log_std() + std_size; }
   // Of the encoder's parameters behind those of the actor's network.
-  size_t eyes_offset() const { return shape[kActor].num_params(); }
+  size_t eyes_offset() const { return actor_params; }
+  bool learns(int32_t g) const { return focus < 0 || g == focus; }
+  // The groups that learn now: [first_group(), last_group()); of an actor of one network one.
+  int32_t first_group() const { return std::max(focus, 0); }
+  int32_t last_group() const { return focus < 0 ? std::max(num_groups, 1) : focus + 1; }
+  // The action's entries that learn now.
+  int32_t first_action() const { return focus < 0 ? 0 : group[focus].first; }
+  int32_t last_action() const { return focus < 0 ? action_dim : group[focus].first + group[focus].count; }
   float* eyes_net() const { return net(kActor) + eyes_offset(); }
   // Entries of the row that the actor sees, before its features.
   int32_t actor_entries() const { return shape[kActor].in - eyes.features(); }
@@ -113,6 +130,8 @@ struct Networks {
   }
   void forward_actor_with(const float* weights, const float* x, const PointRows& clouds, int32_t rows,
                           const ActorScratch& scratch, float* y) const;
+  void forward_groups(const float* weights, const float* x, int32_t rows, const ActorScratch& scratch,
+                      float* y) const;
   const float* seen(int32_t i, const float* x, const MlpScratch& scratch) const {
     return columns[i] ? scratch.picked : x;
   }
@@ -126,14 +145,17 @@ void clamp_log_std(const Networks& n);
 void average_actor(const Networks& n);
 // It begins again with the actor as it is.
 void restart_average(const Networks& n);
+// Adam's counts of the actor begin again.
+void restart_steps(Networks& n);
 // The actor as it is, and back to it: around an update, and around a line search.
 void keep_actor(const Networks& n);
 void restore_actor(const Networks& n);
 // With std_schedule=linear the deviation for the epoch that follows `done` finished ones.
 void schedule_std(const Networks& n, const SharedOptions& options, int32_t done);
 
-inline constexpr int32_t kTensorNameSize = 32;
-// Tensor `index` in the order above, names "actor.log_std", "actor.0.weight", "cost_critic.2.bias".
+inline constexpr int32_t kTensorNameSize = 64;
+// Tensor `index` in the order above, names "actor.log_std", "actor.0.weight", "cost_critic.2.bias"; of an
+// actor in groups "actor.NAME.0.weight".
 bool find_tensor(const Networks& n, int32_t index, char* name, TensorInfo* out);
 
 }  // namespace rdm

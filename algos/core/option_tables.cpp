@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <cstring>
 
+#include "algos/core/algo_row.hpp"
+#include "algos/core/groups.hpp"
 #include "base/error.hpp"
 
 namespace rdm {
@@ -119,7 +121,7 @@ constexpr PresetValue kPresetValues[] = {
 };
 
 // `name` is one of the algorithms "a|b|c".
-bool among(const char* algos, const char* name) {
+bool among_names(const char* algos, const char* name) {
   const size_t size = std::strlen(name);
   for (const char* p = algos; *p;) {
     const char* end = std::strchr(p, '|');
@@ -128,6 +130,10 @@ bool among(const char* algos, const char* name) {
     p += n + (end ? 1 : 0);
   }
   return false;
+}
+
+bool among(const char* algos, const AlgoRow& algo) {
+  return among_names(algos, algo.info.name) || (algo.alone && among_names(algos, algo.alone->info.name));
 }
 
 bool knows(const AlgoInfo& algo, const char* key) {
@@ -142,8 +148,14 @@ bool any_algo_knows(const char* key) {
   return false;
 }
 
-// "focops:passes" names an algorithm and is for that one alone. False: for another, or for shields.
-bool take_owner(const AlgoInfo& algo, OptionInput& in) {
+// What holds for `owner` holds for the algorithm: it is that one, or for one agent would be.
+bool is_or_extends(const AlgoRow& algo, const char* owner) {
+  return same_name(algo.info.name, owner) || (algo.alone && same_name(algo.alone->info.name, owner));
+}
+
+// "focops:passes" names an algorithm and is for that one, and for those that extend it. False: for another, or for
+// shields.
+bool take_owner(const AlgoRow& algo, OptionInput& in) {
   const char* colon = std::strchr(in.key, ':');
   if (!colon) return true;
   if (shield_key(in.key)) return false;
@@ -153,11 +165,12 @@ bool take_owner(const AlgoInfo& algo, OptionInput& in) {
   in.key = colon + 1;
   if (!knows(owner, in.key))
     fail(Code::kNotFound, "%s default: algorithm \"%s\" has no option \"%s\"", kOwner, name, in.key);
-  return &owner == &algo;
+  return is_or_extends(algo, owner.name);
 }
 
-void lay_default(Options& o, const AlgoInfo& algo, OptionInput in) {
+void lay_default(Options& o, const AlgoRow& algo, OptionInput in) {
   if (!in.key) fail(Code::kArgument, "%s default: its key is NULL", kOwner);
+  if (is_group_set(in.key)) return;
   if (!take_owner(algo, in)) return;
   if (!o.knows(in.key)) {
     if (!any_algo_knows(in.key)) o.set(in, kOwner);  // names the nearest key
@@ -169,7 +182,7 @@ void lay_default(Options& o, const AlgoInfo& algo, OptionInput in) {
     o.set_default(in.key, in.number);
 }
 
-void lay_preset(Options& o, const AgentConfig& config, const char* algo) {
+void lay_preset(Options& o, const AgentConfig& config, const AlgoRow& algo) {
   const SharedOptions below = kSharedRows.read(o);
   // Without the length of an episode there is nothing to charge.
   const bool length = config.max_steps > 0 || below.episode_steps > 0;
@@ -191,14 +204,15 @@ std::span<const PresetValue> preset_values() {
   return kPresetValues;
 }
 
-Options read_options(const AgentConfig& config, const AlgoInfo& algo) {
+Options read_options(const AgentConfig& config, const AlgoRow& row) {
+  const AlgoInfo& algo = row.info;
   const HostScope scope(config.hooks);
   Options o;
   o.reserve(algo.num_options);
   o.add_table(algo.options, algo.num_options);
   o.set_all(config.options, config.num_options, config.settings, kOwner);
-  for (int32_t i = 0; i < config.num_defaults; ++i) lay_default(o, algo, config.defaults[i]);
-  lay_preset(o, config, algo.name);
+  for (int32_t i = 0; i < config.num_defaults; ++i) lay_default(o, row, config.defaults[i]);
+  lay_preset(o, config, row);
   // A schedule that nobody asked for gives way.
   if (kSharedRows.read(o).state_std) o.set_default("std_schedule", "none");
   return o;

@@ -9,6 +9,8 @@
 
 namespace rdm {
 
+struct AlgoRow;
+
 inline constexpr int32_t kLongestObs = 1023;  // characters of actor_obs, critic_obs
 inline constexpr double kHuge = 1e12, kMaxMultiplier = kHuge, kMaxLearningRate = 10;
 
@@ -240,8 +242,9 @@ struct PresetValue {
 std::span<const PresetValue> preset_values();
 
 // The values for one agent: table, then config.defaults, then the preset, then config.options. A default
-// that only other algorithms know, or of the form "algorithm:key" for another, is skipped; an option is not.
+// that only other algorithms know, or of the form "algorithm:key" for another, is skipped, and a set of groups is
+// none; an option is not.
 // Takes memory from the hooks of the config, once and for each long text.
-Options read_options(const AgentConfig& config, const AlgoInfo& algo);
+Options read_options(const AgentConfig& config, const AlgoRow& algo);
 
 }  // namespace rdm

@@ -96,7 +96,7 @@ MlpShape parse_shape(const char* key, const char* widths, Activation activation,
 }
 
 // The values of all options, the task's limit on column 0 among the defaults.
-Options read_limited_options(const AgentConfig& c, const AlgoInfo& algo) {
+Options read_limited_options(const AgentConfig& c, const AlgoRow& algo) {
   Options o = read_options(c, algo);
   if (c.cost_dim == 0 || o.given("cost_limit")) return o;
   if (kSharedRows.read(o).shield_learn == ShieldLearn::kCost)  // column 0 counts refusals
@@ -162,6 +162,36 @@ void resolve_eyes(ResolvedAgentConfig& resolved) {
   resolved.frozen = o.encoder_frozen;
 }
 
+// What the actor's networks are in groups; one group is one network that sees what it says.
+void resolve_groups(ResolvedAgentConfig& resolved) {
+  if (!kGroupRows.known_to(resolved.options)) return;
+  const AgentConfig& c = resolved.config;
+  const SharedOptions& o = resolved.shared;
+  Vector<GroupSpec> specs = parse_groups(c, kGroupRows.read(resolved.options).groups);
+  if (specs.empty()) return;
+  if (std::strcmp(o.actor_obs, "*") != 0)
+    fail(Code::kUnsupported, "actor_obs: with option groups each group's own fields stand in groups");
+  if (specs.size() == 1) {
+    resolved.actor_columns = std::move(specs[0].columns);
+    return;
+  }
+  if (*o.encoder)
+    fail(Code::kUnsupported, "encoder: an actor of several groups has none; groups=all has one network");
+  size_t offset = 0;
+  for (const GroupSpec& s : specs) {
+    ActorGroup& g = resolved.groups.emplace_back();
+    std::memcpy(g.name, s.name, sizeof g.name);
+    g.first = s.first, g.count = s.count, g.offset = offset;
+    g.columns = s.columns.empty() ? nullptr : s.columns.data();
+    g.shape = parse_shape("hidden", o.hidden, o.activation,
+                          s.columns.empty() ? c.obs_dim : static_cast<int32_t>(s.columns.size()),
+                          o.state_std ? 2 * s.count : s.count);
+    check_mlp_shape(g.shape);
+    offset += g.shape.num_params();
+  }
+  resolved.group_specs = std::move(specs);
+}
+
 void resolve_networks(ResolvedAgentConfig& resolved) {
   const AgentConfig& c = resolved.config;
   const SharedOptions& o = resolved.shared;
@@ -172,6 +202,7 @@ void resolve_networks(ResolvedAgentConfig& resolved) {
     return seen.empty() ? c.obs_dim : static_cast<int32_t>(seen.size());
   };
   resolved.actor_columns = columns("actor_obs", o.actor_obs);
+  resolve_groups(resolved);
   resolved.critic_columns = columns("critic_obs", o.critic_obs);
   const int32_t actor_in = inputs(resolved.actor_columns), critic_in = inputs(resolved.critic_columns);
   resolve_eyes(resolved);
@@ -254,7 +285,7 @@ double limit_of_first(const ResolvedAgentConfig& resolved) {
 ResolvedAgentConfig resolve_config(const AgentConfig& config) {
   check_config(config);
   const AlgoRow& row = algo_row(algo_find(config.algo));
-  ResolvedAgentConfig resolved(config, read_limited_options(config, row.info), row);
+  ResolvedAgentConfig resolved(config, read_limited_options(config, row), row);
   std::snprintf(resolved.task, sizeof resolved.task, "%s", config.task ? config.task : "");
   resolved.config.algo = row.info.name;
   resolve_costs(resolved);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "algos/core/agent_types.hpp"
+#include "algos/core/groups.hpp"
 #include "algos/core/shared_options.hpp"
 #include "nn/pointnet.hpp"
 
@@ -30,6 +31,10 @@ struct ResolvedAgentConfig {
   bool frozen = false;  // they do not learn
   // Entries of the row that these see, ascending; empty: all.
   Vector<int32_t> actor_columns, critic_columns;
+  // The actor's groups, where it has several (option groups), and what each sees; none: it is one network. The shape
+  // `actor` then is of all of them: every entry of the row, all actions.
+  Vector<ActorGroup> groups;
+  Vector<GroupSpec> group_specs;
   int32_t num_limited = 0;         // limited cost columns; 0 for algorithms without costs
   int32_t column[kMaxCosts] = {};  // [num_limited] column of each
   double limit[kMaxCosts] = {};    // [num_limited] on the sum over an episode, or over rate_steps
@@ -43,6 +48,11 @@ struct ResolvedAgentConfig {
   int32_t workers = 1;         // chunks in flight
   float log_share = 0;         // ln of the innovation's share of the standard deviation
 
+  int32_t num_groups() const { return static_cast<int32_t>(groups.size()); }
+  // Of the actor's networks, its eyes apart.
+  size_t actor_params() const {
+    return groups.empty() ? actor.num_params() : group_params(groups.data(), num_groups());
+  }
   bool sees() const { return eyes.points > 0; }
   // The actor's network gives log deviations behind its means.
   bool state_std() const { return actor.out != config.action_dim; }

@@ -4,21 +4,24 @@
 
 namespace rdm {
 
+// Of several groups each has its own ratio and its own clip (Yu et al. 2022): a diagonal normal factors, so the
+// gradient of a group's parameters is that of its own factor.
 void RatioLoss::add(const PolicyChunk& chunk) const {
   const Rollout& r = *chunk.rollout;
-  const auto dim = static_cast<int32_t>(r.action_dim);
   for (size_t i = 0; i < static_cast<size_t>(chunk.rows); ++i) {
     const auto at = static_cast<size_t>(chunk.order[i]);
     const float *action = r.action + at * r.action_dim, *mean = chunk.mean_of(i);
     const float* log_std = chunk.log_std_of(i);
-    const double ratio = sample_ratio(r, at, mean, log_std);
-    const SampleLoss l = sample(r, at, static_cast<float>(ratio));
-    gaussian_log_prob_grad(mean, log_std, action, dim, chunk.scale * l.slope, chunk.dmean_of(i),
-                           chunk.dlog_std_of(i));
-    chunk.sums->loss += static_cast<double>(l.loss);
-    chunk.sums->clipped += l.clipped;
-    chunk.sums->kl +=
-        static_cast<double>(gaussian_kl(r.mean + at * r.action_dim, r.log_std_of(at), mean, log_std, dim));
+    const double share = 1 / static_cast<double>(chunk.last_part - chunk.first_part);
+    for (size_t g = chunk.first_part; g < chunk.last_part; ++g) {
+      const auto [first, count] = r.part(g);
+      const SampleLoss l = sample(r, at, static_cast<float>(part_ratio(r, at, g, mean, log_std)));
+      gaussian_log_prob_grad(mean + first, log_std + first, action + first, static_cast<int32_t>(count),
+                             chunk.scale * l.slope, chunk.dmean_of(i) + first, chunk.dlog_std_of(i) + first);
+      chunk.sums->loss += share * static_cast<double>(l.loss);
+      chunk.sums->clipped += share * l.clipped;
+    }
+    chunk.sums->kl += sample_kl(r, at, chunk.first_part, chunk.last_part, mean, log_std);
   }
 }
 

@@ -155,7 +155,7 @@ CloneReport clone_actor(const ResolvedAgentConfig& resolved, const DemoRows& giv
   clamp_log_std(nets);
   std::fill_n(actor.adam.m, actor.size, 0.0f);
   std::fill_n(actor.adam.v, actor.size, 0.0f);
-  actor.adam.t = 0;
+  restart_steps(nets);
   return out;
 }
 

@@ -7,7 +7,6 @@
 #include "algos/core/option_tables.hpp"
 #include "base/elementary.hpp"
 #include "base/error.hpp"
-#include "nn/gaussian.hpp"
 #include "nn/kernels.hpp"
 
 namespace rdm {
@@ -177,7 +176,7 @@ void Collector::act_rows(const Workspace& workspace, const float* obs, const Poi
       noise_.take(env, mean + i * dim, given + i * dim, centered);
     else
       noise_.sample(env, mean + i * dim, std, action + i * dim, centered);
-    r.log_prob[at + i] = gaussian_log_prob(mean + i * dim, log_std, centered, static_cast<int32_t>(dim));
+    keep_log_prob(r, at + i, mean + i * dim, log_std);
   }
 }
 
@@ -256,7 +255,7 @@ void Collector::replace(int32_t env, const float* action) {
   const size_t at = r.row(r.filled) + static_cast<size_t>(env), dim = r.action_dim;
   const float* mean = r.mean + at * dim;
   noise_.replace(env, mean, action, r.action + at * dim);
-  r.log_prob[at] = gaussian_log_prob(mean, r.log_std_of(at), r.action + at * dim, static_cast<int32_t>(dim));
+  keep_log_prob(r, at, mean, r.log_std_of(at));
 }
 
 void Collector::foresee(const int32_t* env, const float* obs, int32_t rows, Stream* noise, float* offset,

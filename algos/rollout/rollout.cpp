@@ -38,8 +38,10 @@ Rollout carve_rollout(Arena& arena, const ResolvedAgentConfig& resolved) {
   }
   r.action = arena.make<float>(n * r.action_dim);
   r.mean = arena.make<float>(n * r.action_dim);
-  for (float** column :
-       {&r.log_prob, &r.reward, &r.value, &r.advantage, &r.target, &r.discount, &r.gain, &r.linear})
+  r.num_groups = resolved.num_groups();
+  r.group = r.num_groups ? resolved.groups.data() : nullptr;
+  r.log_prob = arena.make<float>(n * r.parts());
+  for (float** column : {&r.reward, &r.value, &r.advantage, &r.target, &r.discount, &r.gain, &r.linear})
     *column = arena.make<float>(n);
   for (float** column : {&r.cost, &r.cost_value, &r.cost_advantage, &r.cost_target})
     *column = arena.make<float>(n * k);
@@ -69,10 +71,46 @@ void estimate_advantages(const Rollout& r, const AdvantageOptions& options, Rank
   for (int32_t k = -1; k < r.num_costs; ++k) estimate_advantage(r, k, options, ranks);
 }
 
-double sample_ratio(const Rollout& r, size_t at, const float* mean, const float* log_std) {
-  const float* action = r.action + at * r.action_dim;
-  const float log_prob = gaussian_log_prob(mean, log_std, action, static_cast<int32_t>(r.action_dim));
-  return elementary::exp(static_cast<double>(std::min(log_prob - r.log_prob[at], 20.0f)));
+namespace {
+
+float part_log_prob(const Rollout& r, size_t at, size_t part, const float* mean, const float* log_std) {
+  const auto [first, count] = r.part(part);
+  return gaussian_log_prob(mean + first, log_std + first, r.action + at * r.action_dim + first,
+                           static_cast<int32_t>(count));
+}
+
+double ratio_of(float gain) {
+  return elementary::exp(static_cast<double>(std::min(gain, 20.0f)));
+}
+
+}  // namespace
+
+void keep_log_prob(const Rollout& r, size_t at, const float* mean, const float* log_std) {
+  for (size_t g = 0; g < r.parts(); ++g)
+    r.log_prob[at * r.parts() + g] = part_log_prob(r, at, g, mean, log_std);
+}
+
+double part_ratio(const Rollout& r, size_t at, size_t part, const float* mean, const float* log_std) {
+  return ratio_of(part_log_prob(r, at, part, mean, log_std) - r.log_prob[at * r.parts() + part]);
+}
+
+double sample_ratio(const Rollout& r, size_t at, size_t first, size_t last, const float* mean,
+                    const float* log_std) {
+  float gain = 0;
+  for (size_t g = first; g < last; ++g)
+    gain += part_log_prob(r, at, g, mean, log_std) - r.log_prob[at * r.parts() + g];
+  return ratio_of(gain);
+}
+
+double sample_kl(const Rollout& r, size_t at, size_t first, size_t last, const float* mean,
+                 const float* log_std) {
+  double sum = 0;
+  for (size_t g = first; g < last; ++g) {
+    const auto [entry, count] = r.part(g);
+    sum += static_cast<double>(gaussian_kl(r.mean + at * r.action_dim + entry, r.log_std_of(at) + entry,
+                                           mean + entry, log_std + entry, static_cast<int32_t>(count)));
+  }
+  return sum;
 }
 
 void gather_obs(const Rollout& r, const int32_t* order, int32_t stride, int32_t n, float* x) {

@@ -9,7 +9,9 @@ namespace rdm {
 struct Rollout {
   int32_t horizon = 0, num_envs = 0, num_costs = 0;
   size_t obs_dim = 0, action_dim = 0;
-  int32_t filled = 0;  // decisions recorded
+  int32_t filled = 0;                 // decisions recorded
+  const ActorGroup* group = nullptr;  // [num_groups] of the actor; none: one network gives all of an action
+  int32_t num_groups = 0;
 
   // [samples] rows of:
   float* obs = nullptr;                     // [obs_dim] as the networks saw it
@@ -20,7 +22,7 @@ struct Rollout {
   size_t row_points = 0, row_features = 0;  // points and features of a row
   float* action = nullptr;                  // [action_dim] less the offset of the correlated noise
   float* mean = nullptr;                    // [action_dim] of the policy that acted
-  float* log_prob = nullptr;
+  float* log_prob = nullptr;                // [parts()]
   float *reward = nullptr, *value = nullptr, *advantage = nullptr, *target = nullptr;
   // [num_costs]
   float *cost = nullptr, *cost_value = nullptr, *cost_advantage = nullptr, *cost_target = nullptr;
@@ -34,6 +36,15 @@ struct Rollout {
   int32_t* order = nullptr;  // [samples] valid rows, block after block, shuffled
 
   float* log_std_of(size_t at) const { return log_std + at * std_step; }
+  // Entries of the action that one network gives.
+  struct Part {
+    size_t first, count;
+  };
+  size_t parts() const { return static_cast<size_t>(std::max(num_groups, 1)); }
+  Part part(size_t g) const {
+    if (num_groups == 0) return {0, action_dim};
+    return {static_cast<size_t>(group[g].first), static_cast<size_t>(group[g].count)};
+  }
   // What the actor saw of the listed rows, every stride-th of the list.
   PointRows clouds(const int32_t* order, int32_t stride = 1) const {
     return {points, nullptr, point_class, point_color, features, nullptr, order, stride};
@@ -48,9 +59,19 @@ struct AdvantageOptions {
   double lambda = 0.95, cost_lambda = 0.95;
   bool standardize_reward = true, standardize_cost = false;
 };
+// Of row `at`: log p of the actions of each part, after they were written.
+void keep_log_prob(const Rollout& r, size_t at, const float* mean, const float* log_std);
 // p(action) / p_old(action) of row `at` under a policy with this mean and innovation; at most e^20, which is
-// far past any clip and still finite after it is multiplied.
-double sample_ratio(const Rollout& r, size_t at, const float* mean, const float* log_std);
+// far past any clip and still finite after it is multiplied. Of one part alone, or of parts [first, last).
+double part_ratio(const Rollout& r, size_t at, size_t part, const float* mean, const float* log_std);
+double sample_ratio(const Rollout& r, size_t at, size_t first, size_t last, const float* mean,
+                    const float* log_std);
+inline double sample_ratio(const Rollout& r, size_t at, const float* mean, const float* log_std) {
+  return sample_ratio(r, at, 0, r.parts(), mean, log_std);
+}
+// KL(old || now) of the same.
+double sample_kl(const Rollout& r, size_t at, size_t first, size_t last, const float* mean,
+                 const float* log_std);
 // Copies the observations of n listed rows, every stride-th entry of the list, to x [n][obs_dim].
 void gather_obs(const Rollout& r, const int32_t* order, int32_t stride, int32_t n, float* x);
 // Asks the memory for the actions and old means of n listed rows, which a loss is about to read.

@@ -8,6 +8,7 @@ namespace rdm {
 void Cpo::begin_epoch(const JudgedCosts& costs, int32_t epoch) {
   Trpo::begin_epoch(costs, epoch);
   cost_ = 0;
+  added_ = 0;
   free_ = true;
   for (int32_t i = 0; i < resolved().num_limited; ++i) {
     if (costs.spotless[i]) continue;
@@ -27,7 +28,7 @@ bool Cpo::solve(double c) {
 
 bool Cpo::accept(const Surrogate& before, const Surrogate& after) const {
   const auto k = static_cast<size_t>(cost_);
-  return (free_ || after.cost[k] - before.cost[k] <= std::max(-c_, 0.0)) &&
+  return (free_ || after.cost[k] - before.cost[k] <= std::max(-(c_ + added_), 0.0)) &&
          (!keep_reward_ || after.gain >= before.gain);
 }
 

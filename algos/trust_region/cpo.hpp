@@ -24,7 +24,7 @@ class Cpo : public Trpo {
   void begin_epoch(const JudgedCosts& costs, int32_t epoch) override;
   bool constrained() const override { return true; }
   int32_t followed_cost() const override { return free_ ? -1 : cost_; }
-  void aim() override { keep_reward_ = solve(free_ ? 0 : c_); }
+  void aim() override { keep_reward_ = solve(free_ ? 0 : c_ + added_); }
   bool accept(const Surrogate& before, const Surrogate& after) const override;
   double cost_weight(int32_t i) const override { return i == cost_ ? nu_ : 0; }
   void visit_state(StateIo& io) override;
@@ -33,6 +33,7 @@ class Cpo : public Trpo {
   // fall.
   virtual bool solve(double c);
   double nu_ = 0;
+  double added_ = 0;  // to the cost surrogate in this epoch, before the step: by others of a team
 
  private:
   int32_t cost_ = 0;  // the limited cost that this epoch follows

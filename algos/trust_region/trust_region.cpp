@@ -10,6 +10,7 @@ void TrustRegion::carve(Arena& arena, const ResolvedAgentConfig& resolved, const
   fisher_.carve(arena, resolved);
   cg_work_ = carve_cg_work(arena, size_);
   for (float** v : {&g_, &x_, &step_}) *v = arena.make<float>(size_);
+  if (nets.num_groups) base_ = arena.make<float>(size_);
   if (!with_cost) return;
   for (float** v : {&b_, &p_}) *v = arena.make<float>(size_);
 }
@@ -97,10 +98,22 @@ void TrustRegion::set_step(double along_x, double along_p, double along_b) {
 }
 
 Job TrustRegion::begin_search() {
-  keep_actor(*nets_);
+  keep_base();
   fraction_ = 1;
   tried_ = 0;
   return learner_->begin_measure(batch_, 0, true);
+}
+
+// Where the search begins: the policy of before the update, but for a group of a team whose others have stepped.
+void TrustRegion::keep_base() {
+  if (base_)
+    std::copy_n(nets_->params, size_, base_);
+  else
+    keep_actor(*nets_);
+}
+
+const float* TrustRegion::base() const {
+  return base_ ? base_ : nets_->before;
 }
 
 bool TrustRegion::in_region() const {
@@ -110,7 +123,7 @@ bool TrustRegion::in_region() const {
 
 Job TrustRegion::next_try() {
   if (tried_ == options_.line_search_steps) {
-    restore_actor(*nets_);
+    std::copy_n(base(), size_, nets_->params);
     return end_search(0, before_);
   }
   if (tried_++ > 0) fraction_ *= options_.line_search_decay;
@@ -126,8 +139,7 @@ Job TrustRegion::end_search(double taken, const Surrogate& reached) {
 
 void TrustRegion::move(double f) {
   for (size_t i = 0; i < size_; ++i)
-    nets_->params[i] =
-        static_cast<float>(static_cast<double>(nets_->before[i]) + f * static_cast<double>(step_[i]));
+    nets_->params[i] = static_cast<float>(static_cast<double>(base()[i]) + f * static_cast<double>(step_[i]));
   clamp_log_std(*nets_);
 }
 

@@ -104,6 +104,8 @@ class TrustRegion {
   // The last gradient into out, conjugate gradients for it into x.
   void begin_solve(float sign, float* out, float* x);
   Job solve_on();
+  void keep_base();
+  const float* base() const;
   bool in_region() const;
   Job next_try();
   Job end_search(double taken, const Surrogate& reached);
@@ -116,6 +118,7 @@ class TrustRegion {
   TrustOptions options_{};
   ConjugateGradient cg_;
   size_t size_ = 0;
+  float* base_ = nullptr;  // of a team
   float *g_ = nullptr, *x_ = nullptr, *b_ = nullptr, *p_ = nullptr, *step_ = nullptr;
   Batch batch_;
   Stage stage_ = Stage::kDone;

@@ -27,6 +27,7 @@ enum class Purpose : uint32_t {
   kCamera = 13,      // where an episode's cameras stand
   kShield = 14,      // noise of what a shield tries in the place of an action
   kShieldDraw = 15,  // what a shield's copies draw where it does not know its worlds
+  kTurns = 16,       // the order in which the groups of a team learn
 };
 
 class Stream {

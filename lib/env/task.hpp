@@ -120,6 +120,9 @@ class Task {
   // episode's first step on, its cost is 0 exactly, whatever else happens. normal [action_dim]. False: there are no
   // more.
   virtual bool guard_at(int32_t, Guard*, float*) const { return false; }
+  // Row i of the ways to share the action out between the agents of a team: a key "groups.NAME", and the list as agents
+  // read it (option groups). Both live as long as the task. False: there are no more.
+  virtual bool group_set_at(int32_t, const char**, const char**) const { return false; }
   // Entry of the action that drives a joint of the scene; -1: none, or nobody knows.
   virtual int32_t action_of(int32_t) const { return -1; }
 };

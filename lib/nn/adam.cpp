@@ -16,9 +16,17 @@ Adam carve_adam(Arena& arena, size_t size) {
   return a;
 }
 
+double sum_squares(const float* x, size_t count) {
+  return kernels().sum_squares(x, count);
+}
+
 AdamStep adam_begin(Adam& adam, float* params, const float* grad, double rate, double max_norm) {
+  return adam_begin(adam, params, grad, std::sqrt(sum_squares(grad, adam.size)), rate, max_norm);
+}
+
+AdamStep adam_begin(Adam& adam, float* params, const float* grad, double norm, double rate, double max_norm) {
   AdamStep step;
-  step.norm = std::sqrt(kernels().sum_squares(grad, adam.size));
+  step.norm = norm;
   if (!std::isfinite(step.norm)) return step;  // args.size stays 0: adam_range does nothing
   // As PyTorch's clip_grad_norm_: the 1e-6 keeps 0 / 0 away.
   const double clip = max_norm > 0 ? std::min(1.0, max_norm / (step.norm + 1e-6)) : 1.0;

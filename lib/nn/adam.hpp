@@ -27,6 +27,9 @@ struct AdamStep {
   AdamArgs args = {};
 };
 AdamStep adam_begin(Adam& adam, float* params, const float* grad, double rate, double max_norm);
+// Likewise, of a norm that was summed already, such as that of more than this vector.
+AdamStep adam_begin(Adam& adam, float* params, const float* grad, double norm, double rate, double max_norm);
+double sum_squares(const float* x, size_t count);  // in a fixed order
 void adam_range(const AdamStep& step, size_t low, size_t high);
 
 }  // namespace rdm

@@ -48,9 +48,10 @@ const unsigned char* view_floats(Reader& in, size_t n) {
 struct ActScratch {
   MlpScratch mlp;
   PointNetScratch eyes;
-  float* obs = nullptr;   // what the network sees: normalised, with features
-  float* row = nullptr;   // with features: entries before they stand beside these
-  float* head = nullptr;  // the network's outputs, with state_std
+  float* obs = nullptr;                    // what the network sees: normalised, with features
+  float* row = nullptr;                    // with features: entries before they stand beside these
+  float* head = nullptr;                   // the network's outputs, with state_std
+  float *seen = nullptr, *part = nullptr;  // of one group: what it sees and gives
   size_t bytes = 0;
 };
 ActScratch cut_act_scratch(const PolicyView& v, int32_t rows, void* memory) {
@@ -58,13 +59,24 @@ ActScratch cut_act_scratch(const PolicyView& v, int32_t rows, void* memory) {
   ActScratch s;
   ScratchCutter cutter(memory);
   rows = std::clamp(rows, 1, kChunk);
-  s.mlp = cut_forward_scratch(cutter, shape, rows);
+  // Groups act one after the other in the scratch of a network that is as large as any.
+  MlpShape largest = shape;
+  if (v.num_groups) largest.in = largest.out = 1;
+  for (int32_t g = 0; g < v.num_groups; ++g) {
+    largest.in = std::max(largest.in, v.group[g].shape.in);
+    largest.out = std::max(largest.out, v.group[g].shape.out);
+  }
+  s.mlp = cut_forward_scratch(cutter, largest, rows);
   s.obs = cutter.make(sz(rows) * sz(shape.in));
   if (v.eyes.points) {
     s.eyes = cut_pointnet_scratch(cutter, v.eyes);
     s.row = cutter.make(sz(rows) * sz(v.entries()));
   }
   s.head = cutter.make(v.state_std ? sz(rows) * sz(shape.out) : 0);
+  if (v.num_groups) {
+    s.seen = cutter.make(sz(rows) * sz(largest.in));
+    s.part = cutter.make(sz(rows) * sz(largest.out));
+  }
   s.bytes = cutter.used();
   return s;
 }
@@ -119,7 +131,13 @@ void act_view(const PolicyView& v, const float* obs, const PointRows& clouds, in
                        sz(v.actor.in), nullptr);
       x = s.obs;
     }
-    mlp_forward(v.actor, v.params, x, n, s.mlp, y);
+    for (int32_t i = 0; i < v.num_groups; ++i) {
+      const ActorGroup& g = v.group[i];
+      if (g.columns) pick_columns(x, n, v.obs_dim(), g.columns, g.shape.in, s.seen);
+      mlp_forward(g.shape, v.params + g.offset, g.columns ? s.seen : x, n, s.mlp, s.part);
+      spread_outputs(g, s.part, n, sz(v.actor.out), y);
+    }
+    if (!v.num_groups) mlp_forward(v.actor, v.params, x, n, s.mlp, y);
     act_outputs(v, y, n, noise ? noise + sz(at) * dim : nullptr, to);
   }
 }
@@ -217,24 +235,44 @@ void make_up_cloud(const PointNetShape& s, Vector<int16_t>& points, Vector<uint8
   for (size_t i = 0; i < colors.size(); ++i) colors[i] = static_cast<uint8_t>(i * 97 % 256);
 }
 
-// Ranges [begin, end) of entries, ascending and apart from each other.
-void write_columns(Writer& out, const PolicyView& v) {
-  const int32_t count = v.entries();
+// How many ranges [begin, end) of entries, ascending and apart from each other, then the ranges.
+void write_ranges(Writer& out, const int32_t* columns, int32_t count) {
   const auto each_range = [&](auto&& f) {
     for (int32_t i = 0, end = 0; i < count; i = end) {
-      for (end = i + 1; end < count && v.columns[end] == v.columns[end - 1] + 1;) ++end;
-      f(v.columns[i], v.columns[end - 1] + 1);
+      for (end = i + 1; end < count && columns[end] == columns[end - 1] + 1;) ++end;
+      f(columns[i], columns[end - 1] + 1);
     }
   };
   int32_t ranges = 0;
   each_range([&](int32_t, int32_t) { ++ranges; });
-  out.begin_section("COLS");
-  out.value(v.row_dim);
   out.value(ranges);
   each_range([&](int32_t begin, int32_t end) {
     out.value(begin);
     out.value(end);
   });
+}
+
+void write_columns(Writer& out, const PolicyView& v) {
+  out.begin_section("COLS");
+  out.value(v.row_dim);
+  write_ranges(out, v.columns, v.entries());
+  out.end_section();
+}
+
+// Of each group its name, first and number of actions, and what it sees; 0 ranges: all.
+void write_groups(Writer& out, const PolicyView& v) {
+  out.begin_section("GRPS");
+  out.value(v.num_groups);
+  for (int32_t i = 0; i < v.num_groups; ++i) {
+    const ActorGroup& g = v.group[i];
+    out.text(g.name);
+    out.value(g.first);
+    out.value(g.count);
+    if (g.columns)
+      write_ranges(out, g.columns, g.shape.in);
+    else
+      out.value(int32_t{0});
+  }
   out.end_section();
 }
 
@@ -276,9 +314,14 @@ void write_fields(Writer& out, const PolicyView& v) {
 // The parts of a policy file, as pointers into its bytes. All are checked except the example's action, which needs
 // the network (try_example).
 struct PolicyParts {
-  PolicyView v;                           // its numbers; pointers come with keep_parts
-  const unsigned char* ranges = nullptr;  // of entries, where it sees a part of the row
+  PolicyParts() = default;
+  PolicyParts(const PolicyParts&) = delete;  // v.group points to its own
+  PolicyView v;                              // its numbers; pointers come with keep_parts
+  const unsigned char* ranges = nullptr;     // of entries, where it sees a part of the row
   int32_t num_ranges = 0;
+  ActorGroup group[kMaxGroups];  // v.group points here until they are kept
+  const unsigned char* group_ranges[kMaxGroups] = {};
+  int32_t group_num_ranges[kMaxGroups] = {};
   // Of each field offset and count, then names and units with their terminators.
   const unsigned char *field_entries = nullptr, *field_texts = nullptr;
   size_t field_bytes = 0;  // of the texts
@@ -322,43 +365,91 @@ void read_fields(Reader& in, PolicyParts& parts) {
   if (at != end) bad("it has more texts than fields");
 }
 
+// Ranges of the entries of a row, at most so many, none only where that is allowed: the next bytes of the section.
+const unsigned char* view_ranges(Reader& in, int32_t most, int32_t row_dim, int32_t* count,
+                                 bool or_none = false) {
+  *count = in.value<int32_t>();
+  if (*count < (or_none ? 0 : 1) || *count > most) bad("its ranges of entries are not valid");
+  const unsigned char* const ranges = in.view(sz(*count) * sizeof(Pair));
+  for (int32_t k = 0, last = -1; k < *count; ++k) {
+    const auto [begin, end] = pair_of(ranges, k);
+    if (begin <= last || end <= begin || end > row_dim) bad("its ranges of entries are not valid");
+    last = end;
+  }
+  return ranges;
+}
+int32_t count_ranges(const unsigned char* ranges, int32_t count) {
+  int32_t sum = 0;
+  for (int32_t k = 0; k < count; ++k) {
+    const auto [begin, end] = pair_of(ranges, k);
+    sum += end - begin;
+  }
+  return sum;
+}
+
 void read_columns(Reader& in, PolicyParts& parts) {
   in.need_section("COLS");
   PolicyView& v = parts.v;
   const int32_t entries = v.entries();
   v.row_dim = in.value<int32_t>();
   if (v.row_dim <= entries || v.row_dim > kMaxInputs) bad("the observation's size is out of range");
-  parts.num_ranges = in.value<int32_t>();
-  if (parts.num_ranges < 1 || parts.num_ranges > entries) bad("its ranges of entries are not valid");
-  parts.ranges = in.view(sz(parts.num_ranges) * sizeof(Pair));
+  parts.ranges = view_ranges(in, entries, v.row_dim, &parts.num_ranges);
   in.expect_end();
-  int32_t count = 0;
-  for (int32_t k = 0, last = -1; k < parts.num_ranges; ++k) {
-    const auto [begin, end] = pair_of(parts.ranges, k);
-    if (begin <= last || end <= begin || end > v.row_dim) bad("its ranges of entries are not valid");
-    count += end - begin;
-    last = end;
-  }
-  if (count != entries) bad("its ranges of entries do not add up to the network's inputs");
+  if (count_ranges(parts.ranges, parts.num_ranges) != entries)
+    bad("its ranges of entries do not add up to the network's inputs");
 }
 
-PolicyParts read_parts(const void* bytes, size_t size) {
-  PolicyParts parts;
+void read_groups(Reader& in, PolicyParts& parts) {
+  in.need_section("GRPS");
+  PolicyView& v = parts.v;
+  v.num_groups = in.value<int32_t>();
+  if (v.num_groups < 2 || v.num_groups > kMaxGroups) bad("the number of groups is out of range");
+  v.group = parts.group;
+  int32_t actions = 0;
+  size_t offset = 0;
+  for (int32_t i = 0; i < v.num_groups; ++i) {
+    ActorGroup& g = parts.group[i];
+    in.text(g.name, sizeof g.name);
+    if (!*g.name || !is_clean_text(g.name)) bad("the name of a group is not a text");
+    g.first = in.value<int32_t>();
+    g.count = in.value<int32_t>();
+    if (g.first != actions || g.count < 1 || g.count > v.action_dim() - actions)
+      bad("its groups do not share the action out");
+    actions += g.count;
+    g.shape = v.actor;
+    g.shape.out = v.state_std ? 2 * g.count : g.count;
+    const size_t left = in.left();
+    if (left < sizeof(int32_t)) bad("a section is shorter than its groups");
+    parts.group_ranges[i] = view_ranges(in, v.row_dim, v.row_dim, &parts.group_num_ranges[i], true);
+    if (parts.group_num_ranges[i] > 0)
+      g.shape.in = count_ranges(parts.group_ranges[i], parts.group_num_ranges[i]);
+    g.offset = offset;
+    offset += g.shape.num_params();
+  }
+  in.expect_end();
+  if (actions != v.action_dim()) bad("its groups do not share the action out");
+}
+
+void read_parts(const void* bytes, size_t size, PolicyParts& parts) {
   PolicyView& v = parts.v;
   Reader in(bytes, size, kWhat);
   const uint32_t version = in.begin_file(kPolicyMagic, kPolicyVersion);
-  in.need_whole_tags("METAARCHHEADEYESCOLSWGTSNORMEXMP");
+  in.need_whole_tags("METAARCHHEADEYESCOLSGRPSWGTSNORMEXMP");
   read_meta(in, v);
   read_arch(in, v.actor);
   if (version > 1) read_head(in, v);
-  if (version > 3) read_eyes(in, v, version > 4);
+  if (version == 4 || version == 5) read_eyes(in, v, version == 5);
   v.row_dim = v.entries();
   if (version == 3 || (version > 3 && in.find_section("COLS"))) read_columns(in, parts);
+  if (version == 6) {
+    if (parts.ranges) bad("it has entries of the whole and of groups");
+    read_groups(in, parts);
+  }
   read_fields(in, parts);
   read_generation(in, v);
   read_usual(in, v);
   in.need_section("WGTS");
-  parts.params = view_floats(in, v.actor.num_params());
+  parts.params = view_floats(in, v.num_params());
   parts.eyes = view_floats(in, v.eyes.num_params());
   parts.log_std = view_floats(in, v.state_std ? 0 : sz(v.action_dim()));
   in.expect_end();
@@ -381,7 +472,6 @@ PolicyParts read_parts(const void* bytes, size_t size) {
   in.expect_end();
   for (int32_t i = 0; v.eyes.classes && i < v.eyes.points; ++i)
     if (parts.classes[i] >= v.eyes.classes) bad("a point of its example has a class that does not exist");
-  return parts;
 }
 
 template <class T>
@@ -391,15 +481,28 @@ const T* keep(Arena& arena, const unsigned char* from, size_t n) {
   return n ? to : nullptr;
 }
 
-const int32_t* keep_columns(Arena& arena, const PolicyParts& parts) {
-  if (!parts.ranges) return nullptr;
-  auto* const columns = arena.make<int32_t>(sz(parts.v.entries()));
+// The entries of so many ranges, `entries` in all; null without ranges.
+const int32_t* keep_columns(Arena& arena, const unsigned char* ranges, int32_t count, int32_t entries) {
+  if (!ranges || count == 0) return nullptr;
+  auto* const columns = arena.make<int32_t>(sz(entries));
   int32_t* at = columns;
-  for (int32_t k = 0; at && k < parts.num_ranges; ++k) {
-    const auto [begin, end] = pair_of(parts.ranges, k);
+  for (int32_t k = 0; at && k < count; ++k) {
+    const auto [begin, end] = pair_of(ranges, k);
     for (int32_t i = begin; i < end; ++i) *at++ = i;
   }
   return columns;
+}
+
+const ActorGroup* keep_groups(Arena& arena, const PolicyParts& parts) {
+  auto* const groups = arena.make<ActorGroup>(sz(parts.v.num_groups));
+  for (int32_t i = 0; i < parts.v.num_groups; ++i) {
+    const int32_t* columns =
+        keep_columns(arena, parts.group_ranges[i], parts.group_num_ranges[i], parts.group[i].shape.in);
+    if (!groups) continue;
+    groups[i] = parts.group[i];
+    groups[i].columns = columns;
+  }
+  return parts.v.num_groups ? groups : nullptr;
 }
 
 const ObsField* keep_fields(Arena& arena, const PolicyParts& parts) {
@@ -424,9 +527,9 @@ Kept keep_parts(Arena& arena, const PolicyParts& parts) {
   Kept kept;
   PolicyView& v = kept.v = parts.v;
   const size_t n_out = sz(v.action_dim()), n_norm = v.clip > 0 ? sz(v.entries()) : 0;
-  v.columns = keep_columns(arena, parts);
+  v.columns = keep_columns(arena, parts.ranges, parts.num_ranges, v.entries());
   v.fields = keep_fields(arena, parts);
-  v.params = keep<float>(arena, parts.params, v.actor.num_params());
+  v.params = keep<float>(arena, parts.params, v.num_params());
   v.eyes_params = keep<float>(arena, parts.eyes, v.eyes.num_params());
   v.example_points = keep<int16_t>(arena, parts.points, v.eyes.row_points());
   v.example_classes = keep<uint8_t>(arena, parts.classes, v.eyes.classes ? sz(v.eyes.points) : 0);
@@ -437,7 +540,8 @@ Kept keep_parts(Arena& arena, const PolicyParts& parts) {
   v.example_obs = keep<float>(arena, parts.obs, sz(v.row_dim));
   v.example_action = keep<float>(arena, parts.action, n_out);
   kept.action = arena.make<float>(n_out);
-  kept.scratch = arena.make<unsigned char>(cut_act_scratch(v, 1, nullptr).bytes);
+  kept.scratch = arena.make<unsigned char>(cut_act_scratch(parts.v, 1, nullptr).bytes);
+  v.group = keep_groups(arena, parts);
   return kept;
 }
 
@@ -482,7 +586,8 @@ void write_policy(Writer& out, const PolicyView& view) {
     Vector<float> memory(cut_act_scratch(view, 1, nullptr).bytes / sizeof(float) + Arena::kAlign);
     act_view(view, obs.data(), cloud, 1, nullptr, {action.data()}, align_scratch(memory.data()));
   }
-  out.begin_file(kPolicyMagic, eyes.points      ? (eyes.color ? 5 : 4)
+  out.begin_file(kPolicyMagic, view.num_groups  ? 6
+                               : eyes.points    ? (eyes.color ? 5 : 4)
                                : view.columns   ? 3
                                : view.state_std ? 2
                                                 : 1);
@@ -509,6 +614,7 @@ void write_policy(Writer& out, const PolicyView& view) {
   }
   if (eyes.points) write_eyes(out, view);
   if (view.columns) write_columns(out, view);
+  if (view.num_groups) write_groups(out, view);
   if (view.num_fields > 0) write_fields(out, view);
   if (view.generation) {
     out.begin_later_section("GENR");
@@ -517,7 +623,7 @@ void write_policy(Writer& out, const PolicyView& view) {
   }
   if (view.usual.rms > 0) write_usual(out, view);
   out.begin_section("WGTS");
-  write_floats(out, view.params, shape.num_params());
+  write_floats(out, view.params, view.num_params());
   write_floats(out, view.eyes_params, eyes.num_params());
   if (!view.state_std) write_floats(out, view.log_std, n_out);
   out.end_section();
@@ -537,14 +643,37 @@ void write_policy(Writer& out, const PolicyView& view) {
   out.end_file();
 }
 
+void write_group(Writer& out, const PolicyView& view, int32_t i) {
+  const ActorGroup& g = view.group[i];
+  PolicyView one = view;
+  one.group = nullptr, one.num_groups = 0;
+  one.actor = g.shape;
+  one.columns = g.columns;
+  one.params = view.params + g.offset;
+  if (!view.state_std) one.log_std = view.log_std + g.first;
+  one.usual = {};
+  one.example_action = nullptr;
+  Vector<float> shift, scale;
+  if (g.columns && view.clip > 0) {
+    shift.resize(sz(g.shape.in)), scale.resize(sz(g.shape.in));
+    pick_columns(view.shift, 1, view.obs_dim(), g.columns, g.shape.in, shift.data());
+    pick_columns(view.scale, 1, view.obs_dim(), g.columns, g.shape.in, scale.data());
+    one.shift = shift.data(), one.scale = scale.data();
+  }
+  write_policy(out, one);
+}
+
 size_t Policy::memory(const void* bytes, size_t size) {
+  PolicyParts parts;
+  read_parts(bytes, size, parts);
   Arena measure;
-  keep_parts(measure, read_parts(bytes, size));
+  keep_parts(measure, parts);
   return Arena::padded(sizeof(Policy)) + measure.used();
 }
 
 Policy* Policy::read(const void* bytes, size_t size, const HostHooks& hooks) {
-  const PolicyParts parts = read_parts(bytes, size);
+  PolicyParts parts;
+  read_parts(bytes, size, parts);
   Arena measure;
   keep_parts(measure, parts);
   Arena arena(hooks, measure.used());
@@ -577,7 +706,7 @@ void Policy::update(const PolicyView& from) {
     size_t count;
   };
   const size_t n_norm = v.clip > 0 ? sz(v.entries()) : 0;
-  const Part parts[] = {{from.params, v.params, v.actor.num_params()},
+  const Part parts[] = {{from.params, v.params, v.num_params()},
                         {from.eyes_params, v.eyes_params, v.eyes.num_params()},
                         {from.log_std, v.log_std, v.state_std ? 0 : n_out},
                         {from.shift, v.shift, n_norm},

@@ -1,7 +1,8 @@
 // The frozen policy: normaliser, actor network, action scale; runs on a machine that has nothing else.
 // Serialised form: the policy.rdm file (base/bytes.hpp), magic "RDMPOLIC". Version 2 is written for a policy
 // whose deviation depends on the state, version 3 for one that sees a part of the observation alone, version
-// 4 for one that sees points, version 5 for one that sees their colours: versions before do not know these.
+// 4 for one that sees points, version 5 for one that sees their colours, version 6 for one in groups: versions
+// before do not know these.
 // Sections FLDS, the names of fields, GENR, the generation, and SEEN, what is usual in a row, came later and
 // are in files of each version: a reader finds sections by their tags, and passes over others.
 #pragma once
@@ -9,6 +10,7 @@
 
 #include "base/bytes.hpp"
 #include "base/file.hpp"
+#include "nn/actor_group.hpp"
 #include "nn/novelty.hpp"
 #include "nn/obs_field.hpp"
 #include "nn/pointnet.hpp"
@@ -16,17 +18,21 @@
 namespace rdm {
 
 inline constexpr char kPolicyMagic[8] = {'R', 'D', 'M', 'P', 'O', 'L', 'I', 'C'};
-inline constexpr uint32_t kPolicyVersion = 5;
+inline constexpr uint32_t kPolicyVersion = 6;
 
 // Everything that a policy file holds, as views of memory that somebody else owns.
 struct PolicyView {
   MlpShape
       actor;  // in: entries that it sees; out: action_dim, or with state_std twice that, log deviations last
+  // Networks of their own, each of its entries of the action: `actor` is the shape of all together, which sees each
+  // entry of the row, and params are theirs, one behind the other. None: it is one network.
+  const ActorGroup* group = nullptr;   // [num_groups]
+  int32_t num_groups = 0;              // 0, or 2 to kMaxGroups
   PointNetShape eyes;                  // points 0: none; their features are the actor's last inputs
   const float* eyes_params = nullptr;  // [eyes.num_params()]
   const int32_t* columns = nullptr;    // [entries()] entries of the row, ascending; null: all of them
   int32_t row_dim = 0;                 // entries of a row; of no use without columns
-  const float* params = nullptr;       // [actor.num_params()]
+  const float* params = nullptr;       // [num_params()]
   const float* log_std = nullptr;      // [action_dim], null with state_std
   bool state_std = false;              // the network gives the log deviations
   float std_bounds[2] = {};            // lowest and highest of these
@@ -50,10 +56,14 @@ struct PolicyView {
   const uint8_t* example_colors = nullptr;   // [eyes.points][3]
 
   int32_t entries() const { return actor.in - eyes.features(); }  // of a row, that it sees
+  size_t num_params() const { return num_groups ? group_params(group, num_groups) : actor.num_params(); }
   int32_t obs_dim() const { return columns ? row_dim : entries(); }
   int32_t action_dim() const { return state_std ? actor.out / 2 : actor.out; }
 };
 void write_policy(Writer& out, const PolicyView& view);
+// Writes group i of a policy alone, as a policy of its own: of the entries that it sees, with its actions. How usual a
+// row is is not known of it.
+void write_group(Writer& out, const PolicyView& view, int32_t i);
 
 // An owned, immutable policy. act is const and uses only the caller's scratch.
 class Policy {

@@ -96,6 +96,8 @@ class HandControl {
   bool flying(int32_t i) const { return flying_[i]; }
   bool flying() const { return flying_[0] || flying_[1]; }
   int32_t action_dim() const { return first_entry_[count_]; }
+  // Of the action row that are hand i's.
+  int32_t entries(int32_t i) const { return first_entry_[i + 1] - first_entry_[i]; }
   // A joint's command is its action entry in each step, to the bit: nothing is averaged or integrated.
   bool commands_are_actions() const {
     return options_.control == HandDrive::kPosition && options_.action_average == 1;

@@ -33,7 +33,8 @@ HandTask::HandTask(const HandControlConfig& config, const Options& o, int32_t ma
       own_bytes_(own_bytes),
       made_(freed(config, std::move(scene))),
       scene_(make_scene(adjusted(&made_))),
-      hands_(config, o, scene_, made_) {
+      hands_(config, o, scene_, made_),
+      teams_(hands_) {
   if (own_bytes % alignof(double) != 0)
     fail(Code::kInternal, "hand task: %zu bytes of its own state are not a multiple of %zu", own_bytes,
          alignof(double));

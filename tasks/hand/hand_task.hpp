@@ -3,6 +3,7 @@
 #pragma once
 #include "env/task.hpp"
 #include "tasks/hand/hand_control.hpp"
+#include "tasks/hand/hand_teams.hpp"
 #include "tasks/hand/shape_pairs.hpp"
 
 namespace rdm {
@@ -16,6 +17,9 @@ class HandTask : public Task {
   const Vector<FieldSpec>& fields() const override { return fields_; }
   const char* action_order() const override { return hands_.action_order(); }
   int32_t action_of(int32_t joint) const override { return hands_.action_of(joint); }
+  bool group_set_at(int32_t i, const char** key, const char** list) const override {
+    return teams_.set_at(i, key, list);
+  }
   size_t state_bytes() const override { return own_bytes_ + hands_.state_bytes(); }
   void control(World& world, void* state, const float* action) const override {
     hands_.control(world, control_state(state), action);
@@ -65,6 +69,7 @@ class HandTask : public Task {
   HandScene made_;  // but for what went into scene_
   Scene scene_;
   HandControl hands_;
+  HandTeams teams_;
   FieldTable fields_;
   bool mirrors_[kMaxHands] = {};
   Vector<CameraSpec> cameras_;

@@ -1,6 +1,7 @@
 #include <sstream>
 
 #include "agents.hpp"
+#include "algos/core/algo_row.hpp"
 #include "algos/core/option_tables.hpp"
 
 using namespace rdm;
@@ -12,7 +13,7 @@ Options read(AgentSetup& s, std::vector<OptionInput> defaults = {}) {
   s.ready();
   s.config.defaults = defaults.data();
   s.config.num_defaults = static_cast<int32_t>(defaults.size());
-  return read_options(s.config, algo_at(algo_find(s.config.algo)));
+  return read_options(s.config, algo_row(algo_find(s.config.algo)));
 }
 
 }  // namespace

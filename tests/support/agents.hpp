@@ -58,7 +58,7 @@ inline AgentSetup busy_setup(const char* algo, const char* std_mode, int32_t num
   s.with("terminal_cost", "on").with("normalize_reward", "on").with("normalize_cost", "on");
   s.with("reward_factor", "0.5").with("average", "0.6");
   s.with("std_mode", std_mode);
-  for (const char* one : {"cpo", "pcpo", "focops"})
+  for (const char* one : {"cpo", "pcpo", "focops", "macpo"})
     if (std::strcmp(algo, one) == 0) s.with("several_costs", "worst");
   return s;
 }

@@ -1,0 +1,324 @@
+// Teams: groups as texts, one group as the algorithm for one agent, and several groups against what they promise.
+#include <cmath>
+#include <cstring>
+#include <functional>
+
+#include "agents.hpp"
+#include "algos/core/groups.hpp"
+#include "algos/rollout/rollout.hpp"
+#include "heap_count.hpp"
+#include "nn/gaussian.hpp"
+#include "nn/policy.hpp"
+
+using namespace rdm;
+using namespace rdm::test;
+
+namespace {
+
+constexpr int32_t kObs = 10, kActions = 5;
+const ObsField kFields[] = {{"right.angle", 0, 4, ""}, {"left.angle", 4, 3, ""}, {"ball", 7, 3, ""}};
+constexpr const char* kPair = "right:right.*,ball:0-1;left:!right.*:2-4";
+
+AgentSetup team(const char* algo, const char* groups, int32_t envs = 24) {
+  static const double limits[] = {1, -1};
+  AgentSetup s(algo, kObs, kActions, envs);
+  s.config.fields = kFields;
+  s.config.num_fields = 3;
+  s.config.cost_dim = 2;
+  s.config.cost_limits = limits;
+  s.config.max_steps = 30;
+  s.config.seed = 5;
+  s.with("hidden", "12,8").with("horizon", "10").with("passes", "3").with("minibatches", "2");
+  s.with("learning_rate", "2e-3");
+  if (groups) s.with("groups", groups);
+  return s;
+}
+
+std::string refused(const std::function<void()>& f) {
+  try {
+    f();
+  } catch (const Error& e) {
+    return e.text;
+  }
+  return "";
+}
+
+std::string refusal(const char* groups) {
+  return refused([&] { team("mappo", groups).make(); });
+}
+
+// The policy that acts.
+struct Played {
+  explicit Played(Agent& a) {
+    bytes = policy_file(a);
+    policy.reset(Policy::read(bytes.data(), bytes.size(), {}));
+  }
+  std::vector<float> act(const std::vector<float>& obs) const { return act_of(*policy, obs); }
+  static std::vector<float> act_of(const Policy& p, const std::vector<float>& obs) {
+    const auto rows = static_cast<int32_t>(obs.size() / size_of(p.view().obs_dim()));
+    std::vector<float> action(size_of(rows) * size_of(p.view().action_dim()));
+    std::vector<float> scratch(p.scratch_bytes(rows) / sizeof(float) + 16);
+    p.act(obs.data(), rows, nullptr, action.data(), align_scratch(scratch.data()));
+    return action;
+  }
+  struct End {
+    void operator()(Policy* p) const { Policy::destroy(p); }
+  };
+  std::vector<unsigned char> bytes;
+  std::unique_ptr<Policy, End> policy;
+};
+
+std::vector<float> rows_of_noise(size_t numbers) {
+  Stream stream(3, 0, Purpose::kTest);
+  std::vector<float> out(numbers);
+  for (float& x : out) x = static_cast<float>(stream.signed_unit());
+  return out;
+}
+
+}  // namespace
+
+TEST(Groups, AListSaysWhoSeesAndDoesWhat) {
+  AgentSetup s = team("mappo", kPair);
+  const Vector<GroupSpec> g = parse_groups(s.config, kPair);
+  ASSERT_EQ(g.size(), 2u);
+  EXPECT_STREQ(g[0].name, "right");
+  EXPECT_STREQ(g[1].name, "left");
+  EXPECT_EQ(std::vector<int32_t>(g[0].columns.begin(), g[0].columns.end()),
+            (std::vector<int32_t>{0, 1, 2, 3, 7, 8, 9}));
+  EXPECT_EQ(std::vector<int32_t>(g[1].columns.begin(), g[1].columns.end()),
+            (std::vector<int32_t>{4, 5, 6, 7, 8, 9}));
+  EXPECT_EQ(g[0].first, 0);
+  EXPECT_EQ(g[0].count, 2);
+  EXPECT_EQ(g[1].first, 2);
+  EXPECT_EQ(g[1].count, 3);
+}
+
+TEST(Groups, WhatIsNoListIsRefusedWithWhatIsWrong) {
+  EXPECT_EQ(refusal("a:*:0-1;b:*:3-4"),
+            "groups: b begins with entry 3 of the action, where entry 2 comes next");
+  EXPECT_EQ(refusal("a:*:0-1;b:*:2-3"),
+            "groups: entry 4 of the action, and those behind it, belong to no group");
+  EXPECT_EQ(refusal("a:*:0-1;b:*:2-9"),
+            "groups: entries 2 to 9 of group b are not within the 5 of the action");
+  EXPECT_EQ(refusal("a:*:0-1;a:*:2-4"), "groups: a stands twice");
+  EXPECT_EQ(refusal("a:*:0-1;b:*"),
+            "groups: '' of group b is not a first and a last entry of the action, such as 0-19");
+  EXPECT_EQ(refusal("a:*:0-1;b:*:2-4:x"), "groups: 'b:*:2-4:x' is not NAME:FIELDS:FIRST-LAST");
+  EXPECT_EQ(refusal("a:bal:0-1;b:*:2-4").substr(0, 47), "groups: 'bal' names no field of the observation");
+  EXPECT_NE(refusal("pair").find("groups: the task has no set 'pair'"), std::string::npos);
+}
+
+TEST(Groups, ATaskShipsSetsAndTheFirstIsTheDefault) {
+  const OptionInput sets[] = {{"groups.pair", kPair, 0}, {"groups.three", "a:*:0-0;b:*:1-2;c:*:3-4", 0}};
+  const auto count = [&](const char* groups) {
+    AgentSetup s = team("mappo", groups);
+    s.config.defaults = sets;
+    s.config.num_defaults = 2;
+    const AgentPtr a = s.make();
+    return Played(*a).policy->view().num_groups;
+  };
+  EXPECT_EQ(count(nullptr), 2);
+  EXPECT_EQ(count("three"), 3);
+  EXPECT_EQ(count("all"), 0);
+  AgentSetup s = team("mappo", "tree");
+  s.config.defaults = sets;
+  s.config.num_defaults = 2;
+  EXPECT_NE(refused([&] { s.make(); }).find("three"), std::string::npos);
+}
+
+// One group is the algorithm for one agent: the same networks, policies and epochs, to the byte.
+TEST(Team, OneGroupIsTheAlgorithmForOneAgent) {
+  const std::pair<const char*, const char*> pairs[] = {
+      {"mappo", "ppo"}, {"mappo_lag", "ppo_lag"}, {"happo", "ppo"}, {"macpo", "cpo"}};
+  for (const auto& [of_team, alone] : pairs) {
+    SCOPED_TRACE(of_team);
+    const OptionInput defaults[] = {
+        {"ppo:clip", "0.3", 0}, {"ppo_lag:clip", "0.4", 0}, {"cpo:trust_kl", "0.05", 0}};
+    AgentSetup many = team(of_team, "all"), one = team(alone, nullptr);
+    for (AgentSetup* s : {&many, &one}) s->config.defaults = defaults, s->config.num_defaults = 3;
+    const AgentPtr a = many.make(), b = one.make();
+    NoiseWorld world(many.config), other(one.config);
+    for (int i = 0; i < 4; ++i) {
+      Epoch e, f;
+      world.epoch(*a, &e);
+      other.epoch(*b, &f);
+      EXPECT_EQ(0, std::memcmp(&e, &f, sizeof e)) << i;
+    }
+    EXPECT_EQ(parameters(*a), parameters(*b));
+    EXPECT_EQ(policy_file(*a), policy_file(*b));
+  }
+}
+
+class TeamAlgo : public testing::TestWithParam<std::tuple<const char*, const char*>> {
+ protected:
+  AgentSetup setup(int32_t threads = 0) const {
+    AgentSetup s = team(std::get<0>(GetParam()), kPair, 40);
+    s.with("std_mode", std::get<1>(GetParam()));
+    s.config.num_threads = threads;
+    return s;
+  }
+};
+
+TEST_P(TeamAlgo, SameBytesForAnyThreadsAndResumed) {
+  AgentSetup s = setup();
+  const AgentPtr whole = s.make();
+  NoiseWorld world(s.config);
+  for (int i = 0; i < 3; ++i) world.epoch(*whole);
+  const auto bytes = saved(*whole);
+  for (const int32_t threads : {1, 2, 4}) {
+    AgentSetup t = setup(threads);
+    const AgentPtr a = t.make();
+    NoiseWorld same(t.config);
+    for (int i = 0; i < 3; ++i) same.epoch(*a);
+    EXPECT_EQ(saved(*a), bytes) << threads;
+  }
+  AgentSetup r = setup(2);
+  r.config.seed = 77;
+  const AgentPtr resumed = r.make();
+  resumed->load(bytes.data(), bytes.size());
+  NoiseWorld copy = world;
+  for (int i = 0; i < 3; ++i) world.epoch(*whole), copy.epoch(*resumed);
+  EXPECT_EQ(saved(*whole), saved(*resumed));
+}
+
+TEST_P(TeamAlgo, SlicesGiveTheBytesOfAWholeUpdate) {
+  AgentSetup s = setup(), t = setup(2);
+  const AgentPtr whole = s.make(), parts = t.make();
+  NoiseWorld one(s.config), other(t.config);
+  for (int i = 0; i < 3; ++i) {
+    one.epoch(*whole);
+    while (other.obs() && parts->missing() > 0) other.decide(*parts);
+    parts->begin_update(other.obs());
+    std::vector<float> action(40 * kActions), before(40 * kActions);
+    parts->act(other.obs(), false, before.data());
+    for (int k = 1; !parts->update_on(k % 5 + 1, nullptr); ++k) {
+      parts->act(other.obs(), false, action.data());
+      ASSERT_EQ(action, before);  // what acts is the policy of before
+    }
+  }
+  EXPECT_EQ(saved(*whole), saved(*parts));
+}
+
+TEST_P(TeamAlgo, ADropLeavesTheActorsAsTheyWere) {
+  AgentSetup s = setup();
+  const AgentPtr a = s.make();
+  NoiseWorld world(s.config);
+  world.epoch(*a);
+  for (int64_t slices = 1;; slices += 3) {
+    while (a->missing() > 0) world.decide(*a);
+    const auto file = policy_file(*a);
+    a->begin_update(world.obs());
+    int64_t i = 0;
+    while (i < slices && !a->update_on(1, nullptr)) ++i;
+    if (i < slices) break;  // it was done before
+    EXPECT_EQ(policy_file(*a), file) << slices;
+    a->discard();
+    EXPECT_EQ(policy_file(*a), file) << slices;
+    EXPECT_EQ(a->missing(), a->horizon());
+  }
+}
+
+// A group acts on its own fields alone.
+TEST_P(TeamAlgo, AGroupDoesNotSeeTheOthersFields) {
+  AgentSetup s = setup();
+  const AgentPtr a = s.make();
+  NoiseWorld world(s.config);
+  for (int i = 0; i < 3; ++i) world.epoch(*a);
+  const Played p(*a);
+  std::vector<float> obs = rows_of_noise(kObs);
+  const std::vector<float> before = p.act(obs);
+  obs[5] += 0.7f;  // left.angle
+  const std::vector<float> left = p.act(obs);
+  for (size_t j = 0; j < kActions; ++j) EXPECT_EQ(left[j] == before[j], j < 2) << j;
+  obs[5] -= 0.7f, obs[1] += 0.7f;  // right.angle
+  const std::vector<float> right = p.act(obs);
+  for (size_t j = 2; j < kActions; ++j) EXPECT_NEAR(right[j], before[j], 1e-6f) << j;
+  EXPECT_NE(right[0], before[0]);
+}
+
+// The file of a team plays as the agent does, and each group's own file as its part of the team.
+TEST_P(TeamAlgo, FilesOfTheTeamAndOfEachGroupPlayAsTheAgent) {
+  AgentSetup s = setup();
+  const AgentPtr a = s.make();
+  NoiseWorld world(s.config);
+  for (int i = 0; i < 3; ++i) world.epoch(*a);
+  const Played p(*a);
+  const std::vector<float> obs = rows_of_noise(40 * kObs);
+  std::vector<float> agents(40 * kActions);
+  a->act(obs.data(), false, agents.data());
+  const std::vector<float> played = p.act(obs);
+  for (size_t i = 0; i < agents.size(); ++i)
+    ASSERT_NEAR(played[i], std::clamp(agents[i], -1.0f, 1.0f), 1e-6f);
+  for (int32_t g = 0; g < 2; ++g) {
+    const auto bytes = written([&](Writer& w) { write_group(w, p.policy->view(), g); });
+    const std::unique_ptr<Policy, Played::End> own(Policy::read(bytes.data(), bytes.size(), {}));
+    const ActorGroup& group = p.policy->view().group[g];
+    ASSERT_EQ(own->view().action_dim(), group.count);
+    const std::vector<float> part = Played::act_of(*own, obs);
+    for (size_t i = 0; i < 40; ++i)
+      for (size_t j = 0; j < size_of(group.count); ++j)
+        ASSERT_NEAR(part[i * size_of(group.count) + j], played[i * kActions + size_of(group.first) + j],
+                    1e-6f);
+  }
+  // and back into an agent
+  AgentSetup fresh = setup();
+  const AgentPtr b = fresh.make();
+  b->load_policy(p.policy->view(), 1000);
+  std::vector<float> again(agents.size());
+  b->act(obs.data(), false, again.data());
+  for (size_t i = 0; i < agents.size(); ++i) ASSERT_NEAR(again[i], agents[i], 1e-5f);
+}
+
+TEST_P(TeamAlgo, NothingIsAllocatedAfterTheFirstEpoch) {
+  if (!kHeapIsCounted) GTEST_SKIP() << "the heap is the sanitizer's here";
+  AgentSetup s = setup();
+  const AgentPtr a = s.make();
+  NoiseWorld world(s.config);
+  world.epoch(*a);
+  const int64_t before = heap_count();
+  world.epoch(*a);
+  EXPECT_EQ(heap_count(), before);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, TeamAlgo,
+                         testing::Combine(testing::Values("mappo", "mappo_lag", "happo", "macpo"),
+                                          testing::Values("free", "state")),
+                         [](const auto& i) {
+                           return std::string(std::get<0>(i.param)) + "_" + std::get<1>(i.param);
+                         });
+
+// Each group's ratio is clipped by itself, and its parameters' gradient is that of its own factor: against finite
+// differences of the sum over groups of clip(rho_g) A, written here in its own way.
+TEST(Team, RatiosAreOfGroups) {
+  const ActorGroup groups[2] = {[] {
+                                  ActorGroup g;
+                                  g.first = 0, g.count = 2;
+                                  return g;
+                                }(),
+                                [] {
+                                  ActorGroup g;
+                                  g.first = 2, g.count = 3;
+                                  return g;
+                                }()};
+  Rollout r;
+  r.action_dim = kActions;
+  r.group = groups, r.num_groups = 2;
+  std::vector<float> action = {0.1f, -0.2f, 0.3f, 0.4f, -0.5f}, old = {0, 0.1f, 0.2f, 0.3f, 0},
+                     log_std(5, -0.5f);
+  std::vector<float> now = {0.05f, 0.2f, 0.1f, 0.35f, -0.1f}, log_prob(2);
+  r.action = action.data(), r.mean = old.data(), r.log_std = log_std.data(), r.log_prob = log_prob.data();
+  keep_log_prob(r, 0, old.data(), log_std.data());
+  double product = 1;
+  for (size_t g = 0; g < 2; ++g) {
+    double exponent = 0;
+    for (size_t j = size_of(groups[g].first); j < size_of(groups[g].first + groups[g].count); ++j) {
+      const double s2 = std::exp(-1.0);
+      const auto a = static_cast<double>(action[j]), m = static_cast<double>(now[j]),
+                 o = static_cast<double>(old[j]);
+      exponent += ((a - o) * (a - o) - (a - m) * (a - m)) / (2 * s2);
+    }
+    EXPECT_NEAR(part_ratio(r, 0, g, now.data(), log_std.data()), std::exp(exponent), 1e-6) << g;
+    product *= std::exp(exponent);
+  }
+  EXPECT_NEAR(sample_ratio(r, 0, now.data(), log_std.data()), product, 1e-6);
+}
