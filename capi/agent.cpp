@@ -50,10 +50,10 @@ struct Config {
   Vector<ObsField> fields;
 };
 
-// Of a task's defaults, as "actor_obs" or "ppo_lag:actor_obs".
+// Of a task's defaults, as "actor_obs", "ppo_lag:actor_obs" or a set of groups.
 bool names_fields(const OptionInput& option) {
   const std::string_view key = option.key ? option.key : "";
-  return key.ends_with("actor_obs") || key.ends_with("critic_obs");
+  return key.ends_with("actor_obs") || key.ends_with("critic_obs") || is_group_set(option.key);
 }
 
 void read_config(const rdm_agent_config* c, Config* out) {
@@ -127,6 +127,32 @@ rdm_result rdm_agent_config_memory(const rdm_agent_config* c, size_t* bytes) {
     Arena measure;
     carve_decision(measure, config.agent);
     *bytes = inner + measure.used() + sizeof(rdm_agent);
+  });
+}
+
+rdm_result rdm_agent_group_at(const rdm_agent_config* c, const char* groups, int32_t i, rdm_group* io,
+                              char* name, int32_t* columns, size_t capacity) {
+  return call_with(c, [&] {
+    check_out(io, sizeof(rdm_group), "io");
+    need(name, "name");
+    need_room(columns, capacity, "columns");
+    Config config;
+    read_config(c, &config);
+    const HostScope scope(config.agent.hooks);
+    const Vector<GroupSpec> all = parse_groups(config.agent, groups ? groups : "auto");
+    const int32_t dim = config.agent.obs_dim, count = std::max(static_cast<int32_t>(all.size()), 1);
+    need_index(i, count, "i");
+    GroupSpec one;
+    std::strcpy(one.name, "all");
+    one.count = config.agent.action_dim;
+    const GroupSpec& g = all.empty() ? one : all[static_cast<size_t>(i)];
+    rdm_group out{};
+    out.first = g.first, out.count = g.count;
+    out.num_columns = g.columns.empty() ? dim : static_cast<int32_t>(g.columns.size());
+    std::strcpy(name, g.name);
+    write_struct(io, out, sizeof(rdm_group), "io");
+    for (size_t k = 0; k < std::min(capacity, static_cast<size_t>(out.num_columns)); ++k)
+      columns[k] = g.columns.empty() ? static_cast<int32_t>(k) : g.columns[k];
   });
 }
 

@@ -2,7 +2,7 @@
 
 #include "capi/handles.hpp"
 
-#if RDM_WITH_POLICY && RDM_WITH_LEARN
+#if RDM_WITH_POLICY
 using namespace rdm;
 using namespace rdm::capi;
 

@@ -46,6 +46,7 @@ constexpr const TaskInfo* kTasks[] = {
     &kAntCircle,
     &kAntGather,
     &kAntReach,
+    &kMatrixGame,
 };
 
 }  // namespace

@@ -16,6 +16,7 @@ extern const TaskInfo kPickBottles;
 extern const TaskInfo kCleanHouse;
 extern const TaskInfo kBandit;
 extern const TaskInfo kTwoState;
+extern const TaskInfo kMatrixGame;
 extern const TaskInfo kLqrLine;
 extern const TaskInfo kBallRun;
 extern const TaskInfo kBallCircle;

@@ -6,7 +6,8 @@
 //                          groups between semicolons: a name, fields as in actor_obs, the first and last entry
 //   groups=all             one group
 //
-// Groups come in the order of their entries and leave none out, so that each entry has one owner.
+// Groups come in the order of their entries and leave none out, so that each entry has one owner. Of its fields a group
+// sees what option actor_obs has too.
 #pragma once
 #include "algos/core/agent_types.hpp"
 #include "base/option_rows.hpp"

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <iterator>
 #include <utility>
 
 #include "algos/core/algo_row.hpp"
@@ -162,21 +163,32 @@ void resolve_eyes(ResolvedAgentConfig& resolved) {
   resolved.frozen = o.encoder_frozen;
 }
 
-// What the actor's networks are in groups; one group is one network that sees what it says.
+// Those of `own` that are in `seen`; empty lists are all entries, and so is the result where it is all.
+Vector<int32_t> both(const Vector<int32_t>& own, const Vector<int32_t>& seen, const char* group) {
+  if (own.empty() || seen.empty()) return own.empty() ? seen : own;
+  Vector<int32_t> out;
+  out.reserve(std::min(own.size(), seen.size()));
+  std::set_intersection(own.begin(), own.end(), seen.begin(), seen.end(), std::back_inserter(out));
+  if (out.empty()) fail(Code::kArgument, "groups: actor_obs leaves %s no entry of the observation", Quoted(group).text);
+  return out;
+}
+
+// What the actor's networks are in groups, each of which sees its fields as far as actor_obs has them; one group is one
+// network.
 void resolve_groups(ResolvedAgentConfig& resolved) {
   if (!kGroupRows.known_to(resolved.options)) return;
   const AgentConfig& c = resolved.config;
   const SharedOptions& o = resolved.shared;
   Vector<GroupSpec> specs = parse_groups(c, kGroupRows.read(resolved.options).groups);
   if (specs.empty()) return;
-  if (std::strcmp(o.actor_obs, "*") != 0)
-    fail(Code::kUnsupported, "actor_obs: with option groups each group's own fields stand in groups");
+  if (specs.size() > 1 && *o.encoder)
+    fail(Code::kUnsupported, "encoder: an actor of several groups has none; groups=all has one network");
+  for (GroupSpec& s : specs) s.columns = both(s.columns, resolved.actor_columns, s.name);
   if (specs.size() == 1) {
     resolved.actor_columns = std::move(specs[0].columns);
     return;
   }
-  if (*o.encoder)
-    fail(Code::kUnsupported, "encoder: an actor of several groups has none; groups=all has one network");
+  resolved.actor_columns = {};
   size_t offset = 0;
   for (const GroupSpec& s : specs) {
     ActorGroup& g = resolved.groups.emplace_back();

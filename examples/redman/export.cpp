@@ -1,6 +1,7 @@
 // `export`: a policy as a file for other programs.
 #include <redman/sense.hpp>
 #include <redman/shield.hpp>
+#include <redman/team.hpp>
 
 #include "commands.hpp"
 #include "common/files.hpp"
@@ -15,7 +16,7 @@ namespace tool {
 namespace {
 
 struct ExportFlags {
-  std::string policy, onnx, safetensors, c, name, probe, shield = "off";
+  std::string policy, group, file, onnx, safetensors, c, name, probe, shield = "off";
   bool int8 = false, name_given = false;
   int32_t probes = 1000;
   uint64_t seed = 0;
@@ -134,10 +135,23 @@ ActionBounds bounds_of(const std::optional<redman::Pool>& pool) {
           redman::project(normals, bounds, ends[1].data(), ends[1].size())};
 }
 
+// The bytes of one group's policy; Usage with the names of those that there are.
+redman::Bytes group_of(const redman::Policy& team, const std::string& name) {
+  const std::vector<std::string> names = redman::groups(team);
+  std::string all;
+  for (size_t i = 0; i < names.size(); ++i) {
+    if (names[i] == name) return redman::group_bytes(team, static_cast<int32_t>(i));
+    all += (i ? ", " : "") + names[i];
+  }
+  throw Usage("--group " + name + ": " +
+              (names.empty() ? "the policy is one network and has no groups" : "the policy's groups are " + all));
+}
+
 Report run_export(const ExportFlags& flags) {
-  if (flags.onnx.empty() && flags.safetensors.empty() && flags.c.empty() && flags.probe.empty())
+  if (flags.onnx.empty() && flags.safetensors.empty() && flags.c.empty() && flags.probe.empty() && flags.file.empty())
     throw Usage(
-        "export: there is nothing to write; give --c FILE, --onnx FILE, --safetensors FILE or --probe FILE");
+        "export: there is nothing to write; give --c FILE, --onnx FILE, --safetensors FILE, --rdm FILE or --probe "
+        "FILE");
   if (flags.name_given) check_c_name(flags.name);
   const ShieldWord shield = read_shield_word(flags.shield);
   if (shield.on && (shield.predicts || flags.shield.find(':') != std::string::npos))
@@ -147,7 +161,13 @@ Report run_export(const ExportFlags& flags) {
   if (choice.file.empty() || choice.recording)
     throw Usage("--policy " + flags.policy +
                 ": it is not a network; give a policy file, a run folder or trained:TASK");
-  const redman::Policy policy(choice.file.c_str());
+  redman::Policy policy(choice.file.c_str());
+  redman::Bytes own;
+  if (!flags.group.empty()) {
+    if (shield.on) throw Usage("--group: a group's file has no guards, which are of the whole action");
+    own = group_of(policy, flags.group);
+    policy = redman::Policy(own);
+  }
   Network network(policy);
   const auto world = world_of(policy, choice, 0);  // lends the names of its fields
   const std::vector<rdm_field_info> fields = fields_of(world);
@@ -163,6 +183,8 @@ Report run_export(const ExportFlags& flags) {
     json[std::string(kind) + "_bytes"] = bytes.size();
     text += format("wrote %s, %zu bytes\n", file.c_str(), bytes.size());
   };
+  if (!flags.file.empty())
+    write("rdm", flags.file, own.empty() ? read_file(choice.file) : std::string(own.begin(), own.end()));
   if (!flags.onnx.empty()) write("onnx", flags.onnx, onnx_bytes(network));
   if (!flags.safetensors.empty()) write("safetensors", flags.safetensors, safetensors_bytes(network));
   if (!flags.c.empty()) {
@@ -190,6 +212,10 @@ void add_export(CLI::App& app, Run& run) {
   auto flags = std::make_shared<ExportFlags>();
   CLI::App* command = app.add_subcommand("export", "Write a policy as C source, ONNX or safetensors");
   command->add_option("--policy", flags->policy, "policy file, run folder, or trained:TASK")->required();
+  command->add_option("--group", flags->group,
+                      "group of a team's policy, such as left: its network alone, with its own actions")
+      ->type_name("NAME");
+  command->add_option("--rdm", flags->file, "policy file to write, of the group alone with --group");
   CLI::Option* c =
       command->add_option("--c", flags->c, "C99 file to write: one function without heap and library calls");
   CLI::Option* name =

@@ -86,26 +86,26 @@
  * / */
 #ifndef REDMAN_H
 #define REDMAN_H
-#include <redman/agent.h>  /* one algorithm that acts and learns        stable since 1.0 */
 #include <redman/base.h>   /* results, version, hooks, options          stable since 1.0 */
 #include <redman/policy.h> /* the frozen network                        stable since 1.0 */
 #include <redman/pool.h>   /* what exists, and worlds of one task       stable since 1.0 */
+#include <redman/agent.h>  /* one algorithm that acts and learns        stable since 1.0 */
 #endif
 
 /* These headers may change in any minor release. To get them, #define RDM_EXPERIMENTAL before the
  * #include, also in a file that has included the stable ones before; or include one of them by its
  * name. */
 #if defined(RDM_EXPERIMENTAL)
-#include <redman/map.h>    /* what is occupied, free and unknown in space                */
-#include <redman/object.h> /* objects of your own                                        */
-#include <redman/plan.h>   /* actors and planners, which choose actions without learning */
-#include <redman/ranks.h>  /* learning in several processes together                     */
-#include <redman/record.h> /* trajectories as data, and what is learned from them        */
-#include <redman/robot.h>  /* robots of your own                                         */
 #include <redman/sense.h>  /* what worlds observe, and policies that read points         */
+#include <redman/map.h>    /* what is occupied, free and unknown in space                */
+#include <redman/plan.h>   /* actors and planners, which choose actions without learning */
 #include <redman/shield.h> /* shields, which keep costs within their budgets             */
-#include <redman/task.h>   /* tasks of your own                                          */
+#include <redman/record.h> /* trajectories as data, and what is learned from them        */
+#include <redman/ranks.h>  /* learning in several processes together                     */
 #include <redman/team.h>   /* several policies that act together                         */
+#include <redman/robot.h>  /* robots of your own                                         */
+#include <redman/object.h> /* objects of your own                                        */
+#include <redman/task.h>   /* tasks of your own                                          */
 #endif
 
 /* The names of 0.1, which are deprecated. */

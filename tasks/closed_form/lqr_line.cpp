@@ -66,8 +66,8 @@ class LqrLine final : public SampledTask<State> {
  private:
   void start(State* s) const override { s->x = normal(s->noise); }
 
-  void take(double action, State* s) const override {
-    const double a = options_.action_scale * action;
+  void take(const float* action, State* s) const override {
+    const double a = options_.action_scale * static_cast<double>(action[0]);
     s->reward = -(s->x * s->x + options_.effort * a * a);
     s->cost = a * a;
     s->x += a + options_.noise * normal(s->noise);

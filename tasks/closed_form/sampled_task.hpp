@@ -1,4 +1,4 @@
-// A task of one action entry that draws its own noise: a step is settled when the action is taken, the
+// A task of few action entries that draws its own noise: a step is settled when the action is taken, the
 // verdict only tells it. State is plain, with members noise, reward and cost.
 #pragma once
 #include <utility>
@@ -7,10 +7,10 @@
 
 namespace rdm {
 
-template <class State>
+template <class State, int32_t kEntries = 1>
 class SampledTask : public PlanarTask {
  public:
-  int32_t action_dim() const override { return 1; }
+  int32_t action_dim() const override { return kEntries; }
   size_t state_bytes() const override { return sizeof(State); }
 
   void reset(World& world, void* state, Stream& stream) const override {
@@ -22,7 +22,7 @@ class SampledTask : public PlanarTask {
 
   void control(World& world, void* state, const float* action) const override {
     State& s = *static_cast<State*>(state);
-    take(static_cast<double>(action[0]), &s);
+    take(action, &s);
     place(world, s);
   }
 
@@ -40,8 +40,8 @@ class SampledTask : public PlanarTask {
       : PlanarTask(std::move(scene), max_steps, fields) {}
   // A new episode of a zeroed state.
   virtual void start(State* state) const = 0;
-  // The action in [-1, 1]: reward, cost, the next place.
-  virtual void take(double action, State* state) const = 0;
+  // The action [kEntries] in [-1, 1]: reward, cost, the next place.
+  virtual void take(const float* action, State* state) const = 0;
   // Success and end.
   virtual void judge_place(const State& state, Verdict* verdict) const = 0;
   // The body for pictures.

@@ -63,8 +63,8 @@ class TwoState final : public SampledTask<State> {
  private:
   void start(State*) const override {}
 
-  void take(double action, State* s) const override {
-    const int a = action > 0;
+  void take(const float* action, State* s) const override {
+    const int a = action[0] > 0;
     s->reward = kReward[s->at][a];
     s->cost = kCost[s->at][a];
     s->over = s->noise.uniform() < end_probability_;

@@ -108,6 +108,17 @@ TEST(Groups, WhatIsNoListIsRefusedWithWhatIsWrong) {
   EXPECT_NE(refusal("pair").find("groups: the task has no set 'pair'"), std::string::npos);
 }
 
+TEST(Groups, AGroupSeesOfItsFieldsWhatActorObsHas) {
+  AgentSetup s = team("mappo", kPair);
+  s.with("actor_obs", "*.angle");
+  const AgentPtr a = s.make();
+  const Played p(*a);
+  EXPECT_EQ(p.policy->view().group[0].shape.in, 4);
+  EXPECT_EQ(p.policy->view().group[1].shape.in, 3);
+  s.with("actor_obs", "left.angle");
+  EXPECT_EQ(refused([&] { s.make(); }), "groups: actor_obs leaves right no entry of the observation");
+}
+
 TEST(Groups, ATaskShipsSetsAndTheFirstIsTheDefault) {
   const OptionInput sets[] = {{"groups.pair", kPair, 0}, {"groups.three", "a:*:0-0;b:*:1-2;c:*:3-4", 0}};
   const auto count = [&](const char* groups) {

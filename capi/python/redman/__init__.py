@@ -18,10 +18,11 @@ WHAT IS THERE. help(redman.Pool) and so on tell more.
     worlds          Pool, Sensors, Guard; spec, memory; Map, sample_furthest
     learners        Agent, Epoch, CostLimits, Options; Recording, CloneReport; Ranks
     policies        Policy, Actor, Origin, HoldWarning; Planner, PlanInfo; Shield, ShieldRow, project
+    teams           groups, Group; Policy.groups, Policy.group; algorithms mappo, mappo_lag, happo, macpo
     runs            train, Run; callbacks, Callback, Training; evaluate, Evaluation, Player; curve, Curve, Curves; stats
     your own        Rows, Costs: rewards and costs of train and evaluate; Task, RowTask, Verdict, Worlds, SceneBuilder; Robot.create,
                     Object.create, a .task file; check_task, c_function
-    environments    redman.gym, redman.sb3, redman.safety, redman.omnisafe; make, make_vec
+    environments    redman.gym, redman.sb3, redman.safety, redman.omnisafe, redman.pettingzoo; make, make_vec
     records         Algo, Build, Camera, Cost, Field, Joint, MapInfo, Note, Object, Option, PlannerSpec, PolicyInfo, PoolStats,
                     Poses, PretrainReport, RayHit, RecordingInfo, Robot, Shape, ShieldStats, Spec, TaskInfo
     numbers         Autoreset, BaselineKind, Feature, JointKind, NoteKind, OptionKind, OptionLevel, ResultCode, RobotKind,
@@ -76,6 +77,7 @@ from ._robot import Note, Poses, Robot, robot, robots
 from ._scene import SceneBuilder
 from ._shield import Shield, ShieldRow, project
 from ._teach import CloneReport
+from ._team import Group, groups
 from ._run import Run
 from ._train import train
 from ._worlds_rows import Worlds
@@ -86,13 +88,13 @@ __version__ = version = build().version
 __all__ = [
     "Actor", "Agent", "Algo", "AllocationError", "ArgumentError", "Autoreset", "BaselineKind", "Build", "Callback", "Camera",
     "CancelledError", "CloneReport", "Cost", "CostLimits", "Costs", "Curve", "Curves", "Epoch", "Error", "Evaluation", "Feature",
-    "Field", "FileError", "FormatError", "Guard", "HoldWarning", "InternalError", "Joint", "JointKind", "Map", "MapInfo",
+    "Field", "FileError", "FormatError", "Group", "Guard", "HoldWarning", "InternalError", "Joint", "JointKind", "Map", "MapInfo",
     "MissingFileError", "NotFoundError", "Note", "NoteKind", "Object", "Option", "OptionKind", "OptionLevel", "Options",
     "Origin", "PhysicsError", "PlanInfo", "Planner", "PlannerSpec", "Player", "Policy", "PolicyInfo", "Pool", "PoolStats",
     "Poses", "PretrainReport", "RangeError", "Ranks", "RayHit", "Recording", "RecordingInfo", "ResultCode", "Robot",
     "RobotKind", "RowTask", "Rows", "Run", "Scale", "SceneBuilder", "Sensors", "Shape", "ShapeKind", "Shield", "ShieldKind", "ShieldRow", "ShieldStats", "Spec",
     "StateError", "Status", "Task", "TaskInfo", "Training", "UnsupportedError", "UsageError", "Verdict", "VersionError", "Worlds", "__version__", "algo", "algos", "build",
-    "c_function", "callbacks", "check_task", "curve", "evaluate", "features", "load", "load_object", "load_robot", "load_task", "make",
+    "c_function", "callbacks", "check_task", "curve", "evaluate", "features", "groups", "load", "load_object", "load_robot", "load_task", "make",
     "make_vec", "memory", "objects", "planner_options", "project", "robot", "robots", "sample_furthest", "shield_options",
     "spec", "stats", "task", "tasks", "train", "version",
 ]
@@ -105,6 +107,6 @@ if not TYPE_CHECKING:  # a type checker would take it for every name
         """Imports an adapter when it is first used; for names of other libraries, the error says what to write instead."""
         import importlib
         from ._names import module_hint
-        if name in ("gym", "omnisafe", "safety", "sb3"):
+        if name in ("gym", "omnisafe", "pettingzoo", "safety", "sb3"):
             return importlib.import_module(f".{name}", __name__)
         raise AttributeError(module_hint(name, __all__))

@@ -3124,6 +3124,40 @@ class rdm_ranks(Structure):
     ]
 
 
+class Group(Record):
+    """one agent of a team
+
+    first: first entry of the action that is its own
+    count: how many entries follow each other
+    num_columns: entries of the observation that it sees
+    """
+
+    first: int
+    count: int
+    num_columns: int
+
+
+class rdm_group(Structure):
+    """one agent of a team
+
+    struct_size: in: bytes
+    first: first entry of the action that is its own
+    count: how many entries follow each other
+    num_columns: entries of the observation that it sees
+    """
+
+    struct_size: int
+    first: int
+    count: int
+    num_columns: int
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("first", c_int32),
+        ("count", c_int32),
+        ("num_columns", c_int32),
+    ]
+
+
 class rdm_robot_link(Structure):
     """frozen layout: a link and the joint that moves it; m, rad, kg, N, s
 
@@ -4284,6 +4318,7 @@ STRUCTS: dict[str, type[Structure]] = {
     "rdm_clone_config": rdm_clone_config,
     "rdm_clone_report": rdm_clone_report,
     "rdm_ranks": rdm_ranks,
+    "rdm_group": rdm_group,
     "rdm_robot_link": rdm_robot_link,
     "rdm_robot_shape": rdm_robot_shape,
     "rdm_robot_pair": rdm_robot_pair,
@@ -5723,6 +5758,30 @@ FUNCTIONS: dict[str, Function] = {
         choose their random streams, and the part that read_state takes from a state of all worlds (env
         -1). Call it before the first reset; STATE afterwards. rdm_agent_rollout needs an agent and a
         pool of the same rank.
+        """),
+    "rdm_agent_group_at": Function(
+        c_int32, {"c": POINTER(rdm_agent_config), "groups": c_char_p, "i": c_int32, "io": POINTER(rdm_group), "name": c_void_p, "columns": c_void_p, "capacity": c_size_t},
+        {"columns": Rows("int32", ("capacity",))}, True,
+        """Group i of a text that option `groups` would take, for an agent of this config; NULL is "auto":
+        the set that the task ships first, or one group of all. Writes its name to name [RDM_TEXT_SIZE],
+        and up to capacity of the entries of an observation that it sees, ascending, to columns
+        [capacity]. RANGE past the last group. NOT_FOUND
+        for a set that the task does not ship, with those that it does; ARGUMENT or RANGE for a list that
+        is none. No agent is made.
+        """),
+    "rdm_policy_group_name": Function(
+        c_char_p, {"p": c_void_p, "i": c_int32},
+        {}, True,
+        """The name of group i of a policy; lives as long as the policy. NULL ends the list, which is empty
+        for a policy of one network.
+        """),
+    "rdm_policy_write_group": Function(
+        c_int32, {"p": c_void_p, "i": c_int32, "bytes": c_void_p, "capacity": c_size_t, "size": c_void_p},
+        {}, True,
+        """The policy of group i alone as the bytes [capacity] of a policy file; NULL asks for the size. It
+        takes the same rows as the whole policy, of which it reads its group's entries, and gives its
+        group's entries of the action. STATE for a policy of one network, RANGE past the last group.
+        rdm_policy_novelty is UNSUPPORTED on it.
         """),
     "rdm_robot_def_init": Function(
         c_int32, {"def": POINTER(rdm_robot_def), "size": c_size_t},

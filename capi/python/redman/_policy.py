@@ -18,8 +18,8 @@ from ._export import export
 from ._files import MOST_JSON, read_bytes, read_whole, write_whole
 from ._hold import decided, warn
 from ._imported import thing_at
-from ._library import Handle, check, filled, lib, policy_folders
-from ._names import Hinted
+from ._library import Handle, check, filled, lib, policy_folders, text
+from ._names import Hinted, nearest
 from ._options import Value
 from ._own_costs import Own
 from ._pool import Pool
@@ -147,6 +147,27 @@ class Policy(Hinted):
 
     def __bytes__(self) -> bytes:
         return self._bytes
+
+    @property
+    def groups(self) -> tuple[str, ...]:
+        """Names of the groups of a team's policy, in the order of the action; () for a policy of one network."""
+        names: list[str] = []
+        while (name := lib.rdm_policy_group_name(self._handle.value, len(names))) is not None:
+            names.append(text(name))
+        return tuple(names)
+
+    def group(self, name: str) -> Policy:
+        """The policy of one group alone: it takes the same observations and gives its own entries of the action. Saved, it
+        is a policy file of its own, for the machine that moves this hand."""
+        names = self.groups
+        if name not in names:
+            raise NotFoundError(f"group {name}: unknown{nearest(name, names)}" if names else
+                                f"group {name}: the policy is one network and has no groups")
+        size = ctypes.c_size_t()
+        check(lib.rdm_policy_write_group(self._handle.value, names.index(name), None, 0, ctypes.byref(size)))
+        data = ctypes.create_string_buffer(size.value)
+        check(lib.rdm_policy_write_group(self._handle.value, names.index(name), data, size.value, ctypes.byref(size)))
+        return Policy(data.raw)
 
     def act(self, obs: Any, noise: Any = None, points: Any = None, point_class: Any = None,
             point_color: Any = None) -> FloatArray:
