@@ -59,12 +59,16 @@ links() {
   shift
   "$@" | sed "s|^. \`\([a-z0-9_]*\)\` .|\| [\`\1\`](${folder}\1.md) \||"
 }
+# named FOLDER COMMAND...: the names alone of its table, as links in running text.
+named() {
+  links "$@" | sed -n 's/^| \(\[`[^|]*\) |.*/\1/p' | paste -sd, | sed 's/,/, /g' | fold -s -w 150 | sed 's/ *$//'
+}
 names() { "$tool" "$1" | awk 'NR > 1 { print $1 }'; }
 task_blocks() { "$tool" tasks "$1" --markdown && bash examples/score_table.sh --block "$1"; }
 algo_blocks() { "$tool" algos "$1" --markdown && bash examples/paper_report.sh --block "$1"; }
 
 table CONTRIBUTING.md modes bash cmake/check.sh --markdown
-table README.md algorithms links examples/manual/algorithms/ "$tool" algos --markdown
+table README.md algorithms named examples/manual/algorithms/ "$tool" algos --markdown
 table examples/manual/algorithms/README.md algorithms links "" "$tool" algos --markdown
 table examples/manual/tasks/README.md tasks links "" "$tool" tasks --markdown
 table examples/manual/tasks/README.md presets "$tool" tasks --presets --markdown

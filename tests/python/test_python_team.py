@@ -136,7 +136,7 @@ class PettingZoo(unittest.TestCase):
         self.assertEqual(obs.shape[:2], (4, 2))
         done = np.zeros((4, 2), bool)
         for _ in range(80):
-            obs, share, rewards, costs, dones, infos, _ = env.step([np.zeros((4, 20), np.float32)] * 2)
+            obs, share, rewards, costs, dones, infos, _ = env.step([np.zeros((4, space.shape[0]), np.float32) for space in env.action_space])
             self.assertEqual((rewards.shape, costs.shape), ((4, 2, 1), (4, 2, 1)))
             done |= dones
         self.assertTrue(done.all())

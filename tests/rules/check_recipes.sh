@@ -96,7 +96,7 @@ if [ -x "$build/bin/redman" ] && [ -f "$build/redman.map" ]; then
   tables check || status=1
   for row in 'README.md:[`crpo`](examples/manual/algorithms/crpo.md)' 'examples/manual/tasks/README.md:[`fenced_walk`](fenced_walk.md)' \
     'examples/robots/README.md:`one_finger`'; do
-    grep -qF "| ${row#*:} |" "$tree/${row%%:*}" || { echo "${row%%:*} got no row of ${row#*:}"; status=1; }
+    grep -qF "${row#*:}" "$tree/${row%%:*}" || { echo "${row%%:*} got no row of ${row#*:}"; status=1; }
   done
   for page in tasks/fenced_walk algorithms/crpo; do
     grep -q '^<!-- end of options -->$' "$tree/examples/manual/$page.md" || { echo "examples/manual/$page.md was not begun"; status=1; }

@@ -5765,9 +5765,9 @@ FUNCTIONS: dict[str, Function] = {
         """Group i of a text that option `groups` would take, for an agent of this config; NULL is "auto":
         the set that the task ships first, or one group of all. Writes its name to name [RDM_TEXT_SIZE],
         and up to capacity of the entries of an observation that it sees, ascending, to columns
-        [capacity]. RANGE past the last group. NOT_FOUND
-        for a set that the task does not ship, with those that it does; ARGUMENT or RANGE for a list that
-        is none. No agent is made.
+        [capacity]; of these its network reads those that option actor_obs has too. RANGE past the last
+        group. NOT_FOUND for a set that the task does not ship, with those that it does; ARGUMENT or RANGE
+        for a list that is none. No agent is made.
         """),
     "rdm_policy_group_name": Function(
         c_char_p, {"p": c_void_p, "i": c_int32},
