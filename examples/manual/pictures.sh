@@ -41,6 +41,7 @@ clean_house front 4 160x120 0 480
 bandit front 4 180x135 0 1
 two_state front 4 180x135 0 4
 lqr_line front 4 180x135 0 6
+matrix_game front 4 180x135 0 4
 ball_run front 4 180x135 0 240
 ball_circle front 4 180x135 0 240
 car_run front 4 180x135 0 480

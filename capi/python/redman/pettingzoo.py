@@ -117,7 +117,7 @@ class ParallelEnv(_ParallelEnv):  # type: ignore[misc,valid-type]
 
     def state(self) -> FloatArray:
         """The whole observation."""
-        return self.worlds.obs[0].copy()
+        return np.array(self.worlds.obs[0], np.float32)
 
     def reset(self, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None) -> tuple[dict[str, Any], dict[str, Info]]:
         """Begins a new episode: that of the seed, or the next of the world's own stream. options must be empty."""
