@@ -1,6 +1,6 @@
 // The groups of a team: which entries of the action belong to whom, and what each observes. Option groups:
 //
-//   groups=auto            the first set that the task ships, or one group of all where it ships none
+//   groups=auto            the first set that the task has, or one group of all where it has none
 //   groups=hands           the set of this name: the task's default "groups.hands"
 //   groups=right:right.*,object.*,goal.*:0-19;left:left.*,object.*,goal.*:20-39
 //                          groups between semicolons: a name, fields as in actor_obs, the first and last entry
@@ -21,7 +21,7 @@ struct GroupOptions {
 };
 inline constexpr auto kGroupRows = option_rows<GroupOptions>(row<&GroupOptions::groups>(basic(text_option(
     "groups", "auto", nullptr,
-    "agents of a team: a set that the task ships, all, or NAME:FIELDS:FIRST-LAST;... of the action",
+    "agents of a team: a set that the task has, all, or NAME:FIELDS:FIRST-LAST;... of the action",
     kLongestGroups))));
 
 // Prefix of the keys under which a task's defaults hold its sets.

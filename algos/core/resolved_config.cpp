@@ -169,7 +169,8 @@ Vector<int32_t> both(const Vector<int32_t>& own, const Vector<int32_t>& seen, co
   Vector<int32_t> out;
   out.reserve(std::min(own.size(), seen.size()));
   std::set_intersection(own.begin(), own.end(), seen.begin(), seen.end(), std::back_inserter(out));
-  if (out.empty()) fail(Code::kArgument, "groups: actor_obs leaves %s no entry of the observation", Quoted(group).text);
+  if (out.empty())
+    fail(Code::kArgument, "groups: actor_obs leaves %s no entry of the observation", Quoted(group).text);
   return out;
 }
 

@@ -143,14 +143,17 @@ redman::Bytes group_of(const redman::Policy& team, const std::string& name) {
     if (names[i] == name) return redman::group_bytes(team, static_cast<int32_t>(i));
     all += (i ? ", " : "") + names[i];
   }
-  throw Usage("--group " + name + ": " +
-              (names.empty() ? "the policy is one network and has no groups" : "the policy's groups are " + all));
+  throw Usage(
+      "--group " + name + ": " +
+      (names.empty() ? "the policy is one network and has no groups" : "the policy's groups are " + all));
 }
 
 Report run_export(const ExportFlags& flags) {
-  if (flags.onnx.empty() && flags.safetensors.empty() && flags.c.empty() && flags.probe.empty() && flags.file.empty())
+  if (flags.onnx.empty() && flags.safetensors.empty() && flags.c.empty() && flags.probe.empty() &&
+      flags.file.empty())
     throw Usage(
-        "export: there is nothing to write; give --c FILE, --onnx FILE, --safetensors FILE, --rdm FILE or --probe "
+        "export: there is nothing to write; give --c FILE, --onnx FILE, --safetensors FILE, --rdm FILE or "
+        "--probe "
         "FILE");
   if (flags.name_given) check_c_name(flags.name);
   const ShieldWord shield = read_shield_word(flags.shield);
@@ -212,8 +215,9 @@ void add_export(CLI::App& app, Run& run) {
   auto flags = std::make_shared<ExportFlags>();
   CLI::App* command = app.add_subcommand("export", "Write a policy as C source, ONNX or safetensors");
   command->add_option("--policy", flags->policy, "policy file, run folder, or trained:TASK")->required();
-  command->add_option("--group", flags->group,
-                      "group of a team's policy, such as left: its network alone, with its own actions")
+  command
+      ->add_option("--group", flags->group,
+                   "group of a team's policy, such as left: its network alone, with its own actions")
       ->type_name("NAME");
   command->add_option("--rdm", flags->file, "policy file to write, of the group alone with --group");
   CLI::Option* c =

@@ -8,9 +8,9 @@ extern "C" {
 #endif
 
 /* A team is an agent whose action is shared out between groups, such as the two hands: each group
- * has an actor of its own, which sees its own fields of the observation and gives its own entries
+ * has an actor of its own, which reads its own fields of the observation and gives its own entries
  * of the action. Algorithms mappo, mappo_lag, happo and macpo learn teams; their option `groups`
- * names a set that the task ships, or lists groups as NAME:FIELDS:FIRST-LAST;...
+ * names a set that the task has, or lists groups as NAME:FIELDS:FIRST-LAST;...
  *
  *   c.algo = "mappo_lag";
  *   c.settings = "groups=hands";      // of a task with two hands: right, left
@@ -25,14 +25,14 @@ typedef struct rdm_group {  /* one agent of a team */
   uint32_t struct_size;     /* in: bytes */
   int32_t first;            /* first entry of the action that is its own */
   int32_t count;            /* how many entries follow each other */
-  int32_t num_columns;      /* entries of the observation that it sees */
+  int32_t num_columns;      /* entries of the observation that it observes */
 } rdm_group;
 /* Group i of a text that option `groups` would take, for an agent of this config; NULL is "auto":
- * the set that the task ships first, or one group of all. Writes its name to name [RDM_TEXT_SIZE],
- * and up to capacity of the entries of an observation that it sees, ascending, to columns
+ * the set that the task has first, or one group of all. Writes its name to name [RDM_TEXT_SIZE],
+ * and up to capacity of the entries of an observation that it observes, ascending, to columns
  * [capacity]; of these its network reads those that option actor_obs has too. RANGE past the last
- * group. NOT_FOUND for a set that the task does not ship, with those that it does; ARGUMENT or RANGE
- * for a list that is none. No agent is made. */
+ * group. NOT_FOUND for a set that the task does not have, with those that it does; ARGUMENT or
+ * RANGE for a text that is no list of groups. No agent is made. */
 RDM_API rdm_result rdm_agent_group_at(const rdm_agent_config *c, const char *groups, int32_t i,
                                       rdm_group *io, char *name, int32_t *columns,
                                       size_t capacity);

@@ -1,11 +1,11 @@
-// A game of two who want the same and see half each. In each step both draw a side, -1 or 1, that the other does not
+// A game of two who want the same and observe half each. In each step both draw a side, -1 or 1, that the other does not
 // see, and choose 0 or 1: 1 where the sign of their entry is that of their side. Both choose 0: reward 1. Both choose
 // 1: reward 2, and a cost of 1. They differ: 0. An episode has ten steps.
 //
 // Without a limit: both always 1, return 20 at cost 10. Under the limit of 2.5 a team, whose members know nothing of
 // each other's side, can do no better than 0 and 0 in each step, return 10 at cost 0: with probabilities p and q of
 // choosing 1 it has (1 - p)(1 - q) + 2 p q in a step at cost p q <= 1/4, of which 1 at p = q = 0 is the most. One
-// agent that sees both sides has 12.5 at cost 2.5: both 1 where both sides are 1, say, else both 0.
+// agent that observes both sides has 12.5 at cost 2.5: both 1 where both sides are 1, say, else both 0.
 #include "tasks/catalog.hpp"
 #include "tasks/closed_form/sampled_task.hpp"
 #include "tasks/planar/planar_learner.hpp"
@@ -106,6 +106,6 @@ constexpr auto kDefaults = join_defaults(kKnownLearner, {{"hidden", ""},
 }  // namespace
 
 constinit const TaskInfo kMatrixGame = task_info<MatrixGame, kRows, kCosts, kCameras, kDefaults>(
-    "matrix_game", nullptr, "a game of two who see half each and want the same; the optimum is known");
+    "matrix_game", nullptr, "a game of two who observe half each and want the same; the optimum is known");
 
 }  // namespace rdm

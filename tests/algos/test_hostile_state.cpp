@@ -122,8 +122,7 @@ class Victim {
     s.with("activation", std::strcmp(std_mode, "state") == 0 ? "elu" : "tanh");
     s.with("normalize_reward", "on").with("normalize_cost", "on").with("std_mode", std_mode);
     s.with("average", "0.5");
-    for (const char* one : {"cpo", "pcpo", "focops"})
-      if (std::strcmp(algo, one) == 0) s.with("several_costs", "worst");
+    if (algo_row(algo_find(algo)).costs == Costs::kOne) s.with("several_costs", "worst");
     return s;
   }
 

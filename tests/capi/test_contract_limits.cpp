@@ -71,14 +71,24 @@ struct Temptation {
   }
 };
 
+// An algorithm that keeps limits cannot be made without one.
+bool keeps_limits(const char* algo) {
+  rdm_agent_config c;
+  size_t bytes = 0;
+  EXPECT_EQ(rdm_agent_config_init(&c, sizeof c), RDM_OK);
+  c.algo = algo;
+  c.obs_dim = c.action_dim = c.num_envs = 1;
+  c.settings = "cost_limit=-1";
+  return rdm_agent_config_memory(&c, &bytes) == RDM_ERROR_ARGUMENT;
+}
+
 std::vector<std::string> safe_algos() {
   std::vector<std::string> names;
   for (int32_t i = 0; i < rdm_algo_count(); ++i) {
     rdm_algo algo = {};
     algo.struct_size = sizeof algo;
     EXPECT_EQ(rdm_algo_at(i, &algo), RDM_OK);
-    const std::string name = algo.name;
-    if (name != "ppo" && name != "trpo") names.push_back(name);
+    if (keeps_limits(algo.name)) names.emplace_back(algo.name);
   }
   return names;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "algos/agent/agent.hpp"
+#include "algos/core/algo_row.hpp"
 #include "base/bytes.hpp"
 #include "base/error.hpp"
 #include "base/rng.hpp"
@@ -58,8 +59,7 @@ inline AgentSetup busy_setup(const char* algo, const char* std_mode, int32_t num
   s.with("terminal_cost", "on").with("normalize_reward", "on").with("normalize_cost", "on");
   s.with("reward_factor", "0.5").with("average", "0.6");
   s.with("std_mode", std_mode);
-  for (const char* one : {"cpo", "pcpo", "focops", "macpo"})
-    if (std::strcmp(algo, one) == 0) s.with("several_costs", "worst");
+  if (algo_row(algo_find(algo)).costs == Costs::kOne) s.with("several_costs", "worst");
   return s;
 }
 

@@ -3129,7 +3129,7 @@ class Group(Record):
 
     first: first entry of the action that is its own
     count: how many entries follow each other
-    num_columns: entries of the observation that it sees
+    num_columns: entries of the observation that it observes
     """
 
     first: int
@@ -3143,7 +3143,7 @@ class rdm_group(Structure):
     struct_size: in: bytes
     first: first entry of the action that is its own
     count: how many entries follow each other
-    num_columns: entries of the observation that it sees
+    num_columns: entries of the observation that it observes
     """
 
     struct_size: int
@@ -5763,11 +5763,11 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"c": POINTER(rdm_agent_config), "groups": c_char_p, "i": c_int32, "io": POINTER(rdm_group), "name": c_void_p, "columns": c_void_p, "capacity": c_size_t},
         {"columns": Rows("int32", ("capacity",))}, True,
         """Group i of a text that option `groups` would take, for an agent of this config; NULL is "auto":
-        the set that the task ships first, or one group of all. Writes its name to name [RDM_TEXT_SIZE],
-        and up to capacity of the entries of an observation that it sees, ascending, to columns
+        the set that the task has first, or one group of all. Writes its name to name [RDM_TEXT_SIZE],
+        and up to capacity of the entries of an observation that it observes, ascending, to columns
         [capacity]; of these its network reads those that option actor_obs has too. RANGE past the last
-        group. NOT_FOUND for a set that the task does not ship, with those that it does; ARGUMENT or RANGE
-        for a list that is none. No agent is made.
+        group. NOT_FOUND for a set that the task does not have, with those that it does; ARGUMENT or
+        RANGE for a text that is no list of groups. No agent is made.
         """),
     "rdm_policy_group_name": Function(
         c_char_p, {"p": c_void_p, "i": c_int32},

@@ -21,14 +21,14 @@ class Group:
 
     name: str
     actions: slice  # of an action row, its own entries
-    columns: Array  # of an observation row, the entries that it sees, ascending
+    columns: Array  # of an observation row, the entries that it observes, ascending
 
 
 def groups(pool: Pool, which: Optional[str] = None) -> list[Group]:
     """The groups of a pool's task, as option groups of an algorithm for teams reads them.
 
-    which: a set that the task ships, such as "hands" or "fingers"; a list "NAME:FIELDS:FIRST-LAST;..."; "all" for one group;
-    None for the first set that the task ships, or one group where it ships none.
+    which: a set that the task has, such as "hands" or "fingers"; a list "NAME:FIELDS:FIRST-LAST;..."; "all" for one group;
+    None for the first set that the task has, or one group where it has none.
     """
     config = sized(_abi.rdm_agent_config)
     check(lib.rdm_agent_config_init(byref(config), ctypes.sizeof(config)))

@@ -8,7 +8,7 @@
         observations, rewards, terminations, truncations, infos = env.step(actions)
 
 All agents get the team's reward. infos[agent] has "cost", the task's own, "costs" [cost_dim] in the order of env.cost_names,
-and "success". state() is the whole observation, which central critics read. An agent sees the fields of its group, in the
+and "success". state() is the whole observation, which central critics read. An agent observes the fields of its group, in the
 row's order.
 
 SafeEnv has the same worlds under the names of the multi-agent safe suites: step(actions) gives (observations, share_obs,
@@ -44,7 +44,7 @@ Info = dict[str, Any]
 
 
 class _Team:
-    """The worlds of a team, and what each agent sees and does in them."""
+    """The worlds of a team, and what each agent observes and does in them."""
 
     def __init__(self, task: str, groups_of: Optional[str], num_envs: int, autoreset: str, **given: Any) -> None:
         self.worlds = Worlds(task, num_envs, autoreset=autoreset, **given)
@@ -74,7 +74,7 @@ class _Team:
 class ParallelEnv(_ParallelEnv):  # type: ignore[misc,valid-type]
     """One world of a task, with an agent for each group.
 
-    groups: a set that the task ships ("hands", "fingers"), a list "NAME:FIELDS:FIRST-LAST;...", or None for the task's first.
+    groups: a set that the task has ("hands", "fingers"), a list "NAME:FIELDS:FIRST-LAST;...", or None for the task's first.
     The other arguments are those of redman.gym.Env.
     """
 
@@ -108,7 +108,7 @@ class ParallelEnv(_ParallelEnv):  # type: ignore[misc,valid-type]
         return self.worlds.cost_names
 
     def observation_space(self, agent: str) -> Any:
-        """What an agent sees."""
+        """What an agent observes."""
         return self.observation_spaces[agent]
 
     def action_space(self, agent: str) -> Any:
@@ -160,7 +160,7 @@ class ParallelEnv(_ParallelEnv):  # type: ignore[misc,valid-type]
 class SafeEnv:
     """num_envs worlds of a task as the multi-agent safe suites see them: agents by number, arrays [num_envs][agents][...].
 
-    An agent that sees less than another has zeros behind its entries, so that all rows of obs have one width. Worlds restart by
+    An agent that observes less than another has zeros behind its entries, so that all rows of obs have one width. Worlds restart by
     themselves: the observation after an end is that of the next episode.
     """
 
