@@ -87,7 +87,7 @@ Vector<GroupSpec> parse_groups(const AgentConfig& c, const char* text) {
       fail(Code::kArgument, "groups: '%s' is not NAME:FIELDS:FIRST-LAST", Quoted(whole.data()).text);
     for (const GroupSpec& g : out)
       if (same_name(g.name, name.data()))
-        fail(Code::kArgument, "groups: %s stands twice", Quoted(name.data()).text);
+        fail(Code::kArgument, "groups: %s occurs twice", Quoted(name.data()).text);
     GroupSpec& g = out.emplace_back();
     std::memcpy(g.name, name.data(), name.size());
     g.columns = select_columns("groups", fields.data(), c.fields, c.num_fields, c.obs_dim);

@@ -100,7 +100,7 @@ TEST(Groups, WhatIsNoListIsRefusedWithWhatIsWrong) {
             "groups: entry 4 of the action, and those behind it, belong to no group");
   EXPECT_EQ(refusal("a:*:0-1;b:*:2-9"),
             "groups: entries 2 to 9 of group b are not within the 5 of the action");
-  EXPECT_EQ(refusal("a:*:0-1;a:*:2-4"), "groups: a stands twice");
+  EXPECT_EQ(refusal("a:*:0-1;a:*:2-4"), "groups: a occurs twice");
   EXPECT_EQ(refusal("a:*:0-1;b:*"),
             "groups: '' of group b is not a first and a last entry of the action, such as 0-19");
   EXPECT_EQ(refusal("a:*:0-1;b:*:2-4:x"), "groups: 'b:*:2-4:x' is not NAME:FIELDS:FIRST-LAST");
