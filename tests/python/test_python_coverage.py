@@ -18,7 +18,7 @@ import redman
 from redman import _abi, _import_abi
 
 PACKAGE = Path(redman.__file__).parent
-ADAPTERS = ("gym", "omnisafe", "safety", "sb3", "stats")
+ADAPTERS = ("gym", "omnisafe", "pettingzoo", "safety", "sb3", "stats")
 FUNCTIONS = {*_abi.FUNCTIONS, *_import_abi.FUNCTIONS}
 
 MANY = "Worlds has it for many worlds at once"
@@ -66,7 +66,7 @@ class Package:
     def _read(self, module, tree):
         top = self.definitions[module, "<import>"] = Definition(module)
         for node in ast.walk(tree):
-            if isinstance(node, ast.ImportFrom):
+            if isinstance(node, ast.ImportFrom) and node.level > 0:  # of this package; others may have its modules' names
                 for alias in node.names:
                     self.imported[module][alias.asname or alias.name] = (node.module or alias.name, alias.name)
         for node in tree.body:
