@@ -19,10 +19,10 @@ inline constexpr int32_t kLongestGroups = 2047;  // characters of a list
 struct GroupOptions {
   const char* groups;
 };
-inline constexpr auto kGroupRows = option_rows<GroupOptions>(row<&GroupOptions::groups>(basic(text_option(
-    "groups", "auto", nullptr,
-    "agents of a team: a set that the task has, all, or NAME:FIELDS:FIRST-LAST;... of the action",
-    kLongestGroups))));
+inline constexpr auto kGroupRows = option_rows<GroupOptions>(row<&GroupOptions::groups>(basic(
+    text_option("groups", "auto", nullptr,
+                "agents of a team: a set that the task has, all, or NAME:FIELDS:FIRST-LAST;... of the action",
+                kLongestGroups))));
 
 // Prefix of the keys under which a task's defaults hold its sets.
 inline constexpr char kGroupSet[] = "groups.";
