@@ -8,6 +8,7 @@
 #include "common/numbers.hpp"
 #include "common/ownership.hpp"
 #include "common/text.hpp"
+#include "play/feed.hpp"
 #include "play/playback.hpp"
 #include "play/scene.hpp"
 #include "web/glb.hpp"
@@ -20,7 +21,8 @@ constexpr int32_t kMostPixels = 8192;                     // a side
 constexpr uint64_t kMostStripPixels = uint64_t{1} << 24;  // 8 moments of 1920x1080
 
 struct RenderFlags {
-  std::string policy = "hold", size = "640x480", camera = "front", out, video, html, glb, shield = "off";
+  std::string policy = "hold", size = "640x480", camera = "front", out, video, html, glb, feed,
+              shield = "off";
   PoolSettings pool;
   std::vector<std::string> sets;
   int32_t step = 0, strip = 0, from = 0, to = -1, width = 0, height = 0;
@@ -93,11 +95,40 @@ Playback record(const RenderFlags& flags, const ActorChoice& choice, Played& pla
   return playback;
 }
 
+void write_playback(const RenderFlags& flags, const Playback& playback, Json& json,
+                    std::vector<std::string>& files, std::string& text) {
+  if (!flags.html.empty()) {
+    replace_file(flags.html, playback_page(playback, flags.camera));
+    files.push_back(json["html"] = flags.html);
+  }
+  if (!flags.glb.empty()) {
+    replace_file(flags.glb, glb_bytes(playback));
+    files.push_back(json["glb"] = flags.glb);
+  }
+  text += format("%zu frames of playback, %zu shapes\n", playback.frames, playback.bodies.size());
+}
+
+// The episode of another program.
+Report run_feed(const RenderFlags& flags) {
+  if (flags.html.empty() && flags.glb.empty())
+    throw Usage("--feed: say what is made of it, by --html or --glb");
+  Json json;
+  std::vector<std::string> files;
+  std::string text;
+  const Playback playback = read_episode(flags.feed);
+  write_playback(flags, playback, json, files, text);
+  json["file"] = files.front();
+  json["frames"] = playback.frames;
+  for (const std::string& file : files) text += "wrote " + file + '\n';
+  return {json, text};
+}
+
 Report run_render(RenderFlags flags) {
   read_size(flags);
   if (!flags.html.empty()) check_viewer();
   for (const std::string& file : {flags.html, flags.glb})
     if (!file.empty()) check_replaceable(file);
+  if (!flags.feed.empty()) return run_feed(flags);
   ActorChoice choice = choose_actor(flags.policy, flags.pool.task);
   choice.shield = read_shield_word(flags.shield);
   adopt_task(choice, flags.task_given, flags.sets, flags.pool);
@@ -140,15 +171,7 @@ Report run_render(RenderFlags flags) {
                   frames / std::max(seconds, 1e-9));
   if (!flags.html.empty() || !flags.glb.empty()) {
     const Playback playback = record(flags, choice, played);
-    if (!flags.html.empty()) {
-      replace_file(flags.html, playback_page(playback, flags.camera));
-      files.push_back(json["html"] = flags.html);
-    }
-    if (!flags.glb.empty()) {
-      replace_file(flags.glb, glb_bytes(playback));
-      files.push_back(json["glb"] = flags.glb);
-    }
-    text += format("%zu frames of playback, %zu shapes\n", playback.frames, playback.bodies.size());
+    write_playback(flags, playback, json, files, text);
     if (frames == 0) json["frames"] = playback.frames;
   }
   json["file"] = files.front();
@@ -212,8 +235,15 @@ void add_render(CLI::App& app, Run& run) {
       "HTML page to write: the episode in 3D, to play and rotate, above its reward and costs");
   command->add_option("--glb", flags->glb,
                       "binary glTF file to write: the episode as an animation for 3D viewers");
+  CLI::Option* feed = command->add_option("--feed", flags->feed,
+                                          "file of the frames of an episode that another program played, "
+                                          "such as Python's package; for --html and "
+                                          "--glb, instead of playing one");
   add_shield_flag(*command, flags->shield);
   add_set_flag(*command, flags->sets);
+  for (const char* name : {"--task", "--policy", "--seed", "--step", "--strip", "--from", "--to", "--worlds",
+                           "--video", "--cloud", "--shield", "--set"})
+    feed->excludes(name);
   command->callback([&run, flags, task, step] {
     flags->task_given = task->count() > 0;
     flags->step_given = step->count() > 0;

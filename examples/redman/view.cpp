@@ -9,8 +9,10 @@
 #include "common/clock.hpp"
 #include "common/files.hpp"
 #include "common/names.hpp"
+#include "common/posix.hpp"
 #include "common/text.hpp"
 #include "play/shield_word.hpp"
+#include "view/fed.hpp"
 #include "view/server.hpp"
 #include "view/session.hpp"
 #include "web/page.hpp"
@@ -50,13 +52,13 @@ struct ViewFlags {
   std::vector<std::string> sets;
   int32_t port = 0;
   double megabytes = 64;
-  bool opens = false, paused = false, task_given = false;
+  bool opens = false, paused = false, feed = false, task_given = false;
 };
 
 // The loop between worlds, which go by the clock, and windows.
 class View {
  public:
-  View(Session& session, ViewServer& server, bool paused)
+  View(Viewed& session, ViewServer& server, bool paused)
       : session_(session), server_(server), paused_(paused) {}
   void run() {
     for (auto before = Clock::now(); !g_ends;) {
@@ -64,6 +66,7 @@ class View {
       const auto now = Clock::now();
       go_on(std::chrono::duration<double>(now - before).count());
       before = now;
+      if (!session_.listen(windows_.size())) return;
       show();
     }
   }
@@ -81,21 +84,23 @@ class View {
 
   // A frame that is overdue waits for its window, or for a change.
   double pause() const {
-    if (windows_.empty()) return 0.5;
-    const double frame = -since(due_), step = session_.plays() ? (1 - owed_) * session_.step_seconds() : 0.5;
-    return std::max(0.0, frame > 0 ? std::min(frame, step) : step);
+    const double most = session_.patience();
+    if (windows_.empty()) return most;
+    const double frame = -since(due_), step = session_.plays() ? (1 - owed_) * session_.step_seconds() : most;
+    return std::max(0.0, std::min(most, frame > 0 ? std::min(frame, step) : step));
   }
   void hear(const std::vector<ViewServer::Event>& events) {
     for (const auto& e : events) {
       if (e.kind == ViewServer::Event::kOpened) {
         windows_.push_back({e.window});
-        if (!paused_ && !begun_) session_.command({{"do", "play"}, {"on", true}});
+        if (!paused_ && !begun_ && session_.scene_number() > 0)
+          session_.command({{"do", "play"}, {"on", true}});
         begun_ = true;
       } else if (e.kind == ViewServer::Event::kClosed) {
         windows_.erase(std::remove_if(windows_.begin(), windows_.end(),
                                       [&](const Window& w) { return w.number == e.window; }),
                        windows_.end());
-        session_.command({{"do", "release"}});
+        if (session_.scene_number() > 0) session_.command({{"do", "release"}});
       } else {
         answer(e);
       }
@@ -140,7 +145,7 @@ class View {
     if (now < due_) return;
     bool shown = false;
     for (Window& w : windows_) {
-      if (!server_.ready(w.number)) continue;
+      if (!server_.ready(w.number) || session_.scene_number() == 0) continue;
       if (w.scene != session_.scene_number()) {
         server_.send_text(w.number, json_text(session_.scene()));
         w.scene = session_.scene_number();
@@ -162,7 +167,7 @@ class View {
     due_ = std::max(due_ + every, now);  // what came late by less than one is made up for
   }
 
-  Session& session_;
+  Viewed& session_;
   ViewServer& server_;
   bool paused_, begun_ = false;
   std::vector<Window> windows_;
@@ -170,6 +175,39 @@ class View {
   int64_t frames_ = 0;
   Clock::time_point due_ = Clock::now();  // the next frame
 };
+
+size_t history_bytes(const ViewFlags& flags) {
+  return static_cast<size_t>(flags.megabytes * (1 << 20));
+}
+
+Report serve(const ViewFlags& flags, Viewed& viewed, const std::string& title) {
+  ViewServer server(static_cast<uint16_t>(flags.port),
+                    filled_page("view.html", {{"title", html_text(title)}}));
+  EndScope scope;
+  std::fprintf(stderr, "%s\nCtrl-C ends it\n", server.address().c_str());
+  if (flags.feed) {
+    std::printf("%s\n", json_text({{"address", server.address()}}).c_str());
+    std::fflush(stdout);
+  }
+  if (flags.opens && !open_browser(server.address().c_str()))
+    std::fprintf(stderr, "--open: no browser was found; open the address yourself\n");
+  View view(viewed, server, flags.paused);
+  view.run();
+  viewed.finish();
+  Json json = viewed.summary();
+  json["frames"] = view.frames();
+  json["seconds"] = view.seconds();
+  json["frames_per_second"] =
+      view.seconds() > 0 ? Json(static_cast<double>(view.frames()) / view.seconds()) : Json();
+  std::string text =
+      format("%lld steps, %lld frames in %.1f s of playing", static_cast<long long>(viewed.steps()),
+             static_cast<long long>(view.frames()), view.seconds());
+  if (view.seconds() > 0)
+    text += format(", %.1f a second", static_cast<double>(view.frames()) / view.seconds());
+  text += '\n';
+  for (const std::string file : json["files"]) text += "wrote " + file + '\n';
+  return {json, text};
+}
 
 Report run_view(ViewFlags flags) {
   ViewSettings& v = flags.view;
@@ -179,30 +217,23 @@ Report run_view(ViewFlags flags) {
   ActorChoice choice = choose_actor(v.policies.front(), v.pool.task);
   adopt_task(choice, flags.task_given, flags.sets, v.pool);
   apply_sets(flags.sets, v.pool, nullptr);
-  v.history_bytes = static_cast<size_t>(flags.megabytes * (1 << 20));
+  v.history_bytes = history_bytes(flags);
   Session session(v);
-  ViewServer server(static_cast<uint16_t>(flags.port),
-                    filled_page("view.html", {{"title", html_text(v.pool.task)}}));
-  EndScope scope;
-  std::fprintf(stderr, "%s\nCtrl-C ends it\n", server.address().c_str());
-  if (flags.opens && !open_browser(server.address().c_str()))
-    std::fprintf(stderr, "--open: no browser was found; open the address yourself\n");
-  View view(session, server, flags.paused);
-  view.run();
-  session.finish();
-  Json json = session.summary();
-  json["frames"] = view.frames();
-  json["seconds"] = view.seconds();
-  json["frames_per_second"] =
-      view.seconds() > 0 ? Json(static_cast<double>(view.frames()) / view.seconds()) : Json();
-  std::string text =
-      format("%lld steps, %lld frames in %.1f s of playing", static_cast<long long>(session.steps()),
-             static_cast<long long>(view.frames()), view.seconds());
-  if (view.seconds() > 0)
-    text += format(", %.1f a second", static_cast<double>(view.frames()) / view.seconds());
-  text += '\n';
-  for (const std::string file : json["files"]) text += "wrote " + file + '\n';
-  return {json, text};
+  return serve(flags, session, v.pool.task);
+}
+
+// Worlds of another program, until it has nothing more to say.
+Report run_fed(const ViewFlags& flags) {
+  check_viewer();
+  const auto say = [](const std::string& line) {
+    std::fputs((line + '\n').c_str(), stdout);
+    std::fflush(stdout);
+  };
+#if defined(_WIN32)
+  _setmode(STDIN_FILENO, _O_BINARY);
+#endif
+  Fed fed(STDIN_FILENO, say, history_bytes(flags), !flags.paused);
+  return serve(flags, fed, "redman");
 }
 
 }  // namespace
@@ -222,6 +253,9 @@ void add_view(CLI::App& app, Run& run) {
       ->check(CLI::Range(0, 65535));
   command->add_flag("--open", flags->opens, "open the page in a browser");
   command->add_flag("--paused", flags->paused, "start paused");
+  CLI::Option* feed = command->add_flag(
+      "--feed", flags->feed,
+      "show the worlds of another program, such as Python's package, which sends them to standard input");
   command->add_option("--history", flags->megabytes, "memory for past states to go back to, MB")
       ->check(CLI::Range(0.0, 65536.0));
   command->add_option("--record", flags->view.record,
@@ -229,11 +263,13 @@ void add_view(CLI::App& app, Run& run) {
   add_shield_flag(*command, flags->view.shield);
   add_cost_limit_flag(*command, flags->view.limits);
   add_set_flag(*command, flags->sets);
+  for (const char* name : {"--task", "--policy", "--envs", "--record", "--shield", "--cost-limit", "--set"})
+    feed->excludes(name);
   command->callback([&run, flags, task] {
     flags->task_given = task->count() > 0;
     if (flags->view.pool.envs > kMostViewed)
       throw Usage(format("--envs: the page shows at most %d worlds", kMostViewed));
-    run = [flags] { return run_view(*flags); };
+    run = [flags] { return flags->feed ? run_fed(*flags) : run_view(*flags); };
   });
 }
 

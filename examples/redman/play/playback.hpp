@@ -1,5 +1,7 @@
 // An episode as it looked, frame by frame: what a viewer needs of it when the pool is gone.
 #pragma once
+#include <deque>
+#include <memory>
 #include <redman/redman.hpp>
 #include <string>
 #include <vector>
@@ -27,6 +29,7 @@ struct Playback {
   std::vector<Body> bodies;
   std::vector<rdm_camera_info> cameras;
   std::vector<CostCurve> costs;
+  std::shared_ptr<std::deque<std::string>> names;  // of cameras, where no task holds them
 
   size_t frames = 0;
   std::vector<float> poses;           // [frames][bodies][7] position (m), quaternion (x, y, z, w)

@@ -20,37 +20,49 @@ void append(std::vector<float>& out, const std::vector<rdm_pose>& poses) {
   for (const rdm_pose& pose : poses) append(out, pose);
 }
 
-constexpr int64_t kMostRows = 1200;  // of one frame
-
-Json number(float x) {
-  return std::isfinite(x) ? Json(x) : Json();
-}
-Json numbers(const float* from, size_t count) {
-  Json out = Json::array();
-  for (size_t i = 0; i < count; ++i) out.push_back(number(from[i]));
-  return out;
-}
-
-Json shape_json(const redman::Pool& pool, const Body& body, int32_t index) {
-  rdm_shape_info shape = RDM_INIT(rdm_shape_info);
-  redman::check(rdm_pool_shape_at(pool.get(), index, &shape));
-  Json out = {{"name", body.name},
-              {"kind", body.kind},
-              {"fixed", shape.fixed},
-              {"size", body.size},
-              {"color", body.color}};
-  if (body.corners.empty()) return out;
-  const Solid solid = make_hull(body.corners);
-  out["mesh"] = {{"position", solid.points}, {"normal", solid.normals}, {"index", solid.triangles}};
-  return out;
-}
-
 void read_point(const Document& asked, const char* key, double out[3]) {
   const Document& list = list_at(asked, key, 3);
   for (size_t k = 0; k < 3; ++k) out[k] = number_of(list[k], key, -1e6, 1e6);
 }
 
 }  // namespace
+
+Json number_json(float x) {
+  return std::isfinite(x) ? Json(x) : Json();
+}
+
+Json numbers_json(const float* from, size_t count) {
+  Json out = Json::array();
+  for (size_t i = 0; i < count; ++i) out.push_back(number_json(from[i]));
+  return out;
+}
+
+Json shape_json(const Body& body, bool fixed) {
+  Json out = {
+      {"name", body.name}, {"kind", body.kind}, {"fixed", fixed}, {"size", body.size}, {"color", body.color}};
+  if (body.corners.empty()) return out;
+  const Solid solid = make_hull(body.corners);
+  out["mesh"] = {{"position", solid.points}, {"normal", solid.normals}, {"index", solid.triangles}};
+  return out;
+}
+
+double pull_of(const double at[3], const double to[3], double newton, double reach, float force[3]) {
+  double pull[3];
+  for (size_t k = 0; k < 3; ++k) pull[k] = to[k] - at[k];
+  const double length = std::hypot(pull[0], pull[1], pull[2]), share = newton / std::max(reach, length);
+  for (size_t k = 0; k < 3; ++k) force[k] = static_cast<float>(share * pull[k]);
+  return share * length;
+}
+
+// u32 length of the JSON text (padded with spaces to 4 bytes), the text, then float32, little-endian.
+std::string frame_bytes(const Json& head, const std::vector<float>& numbers) {
+  std::string text = json_text(head);
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  const auto size = static_cast<uint32_t>(text.size());
+  std::string out(reinterpret_cast<const char*>(&size), sizeof size);
+  out += text;
+  return out.append(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(float));
+}
 
 Json Session::command(const Document& asked) {
   const std::string what = text_at(asked, "do", 16);
@@ -147,7 +159,8 @@ Json Session::scene() const {
   Json shapes = Json::array(), costs = Json::array(), cameras = Json::array(), actions = Json::array(),
        options = Json::array();
   for (size_t i = 0; i < looks_.bodies.size(); ++i)
-    shapes.push_back(shape_json(*pool_, looks_.bodies[i], static_cast<int32_t>(i)));
+    shapes.push_back(shape_json(looks_.bodies[i], std::find(moving_.begin(), moving_.end(),
+                                                            static_cast<int32_t>(i)) == moving_.end()));
   std::vector<float> poses;  // of all shapes, those that stand too
   for (size_t i = 0; i < pool_->num_envs(); ++i) append(poses, pool_->poses(static_cast<int32_t>(i)));
   for (const CostCurve& c : looks_.costs)
@@ -199,7 +212,7 @@ Json Session::scene() const {
           {"record", settings_.record}};
 }
 
-// u32 length of the JSON text (padded with spaces to 4 bytes), the text, then float32, little-endian: poses
+// Its numbers: poses
 // [worlds][moving][7], contacts of the watched world [contacts][6] position and force, points [points][3] of its cloud and what each lies on [points].
 std::string Session::frame(int64_t since) const {
   const History::Rows& r = history_.at(at_).rows;
@@ -239,22 +252,22 @@ std::string Session::frame(int64_t since) const {
                {"contacts", contacts},
                {"points", points},
                {"step", r.step},
-               {"reward", numbers(r.reward.data(), n)},
-               {"return", numbers(r.episode_return.data(), n)},
+               {"reward", numbers_json(r.reward.data(), n)},
+               {"return", numbers_json(r.episode_return.data(), n)},
                {"ended", r.ended},
                {"success", r.success},
                {"stepped_in", r.stepped_in},
-               {"cost", numbers(r.cost.data() + watched() * costs, costs)},
-               {"sum", numbers(r.episode_cost.data() + watched() * costs, costs)},
-               {"action", by_hand_ ? numbers(own_.data(), width)
-                                   : numbers(r.action.data() + watched() * width, width)}};
+               {"cost", numbers_json(r.cost.data() + watched() * costs, costs)},
+               {"sum", numbers_json(r.episode_cost.data() + watched() * costs, costs)},
+               {"action", by_hand_ ? numbers_json(own_.data(), width)
+                                   : numbers_json(r.action.data() + watched() * width, width)}};
   // moments that were not shown: return and sums of costs of the watched world
   Json rows = Json::array();
   since = std::max({since, history_.first() - 1, at_ - kMostRows});
   for (int64_t k = since + 1; k <= at_; ++k) {
     const History::Rows& row = history_.at(k).rows;
-    rows.push_back(numbers(row.episode_cost.data() + watched() * costs, costs));
-    rows.back().insert(rows.back().begin(), number(row.episode_return[watched()]));
+    rows.push_back(numbers_json(row.episode_cost.data() + watched() * costs, costs));
+    rows.back().insert(rows.back().begin(), number_json(row.episode_return[watched()]));
   }
   head["rows"] = rows;
   if (grab_) head["force"] = grab_->force;
@@ -263,12 +276,7 @@ std::string Session::frame(int64_t since) const {
                     {"dropped", take_->dropped},
                     {"pushed", take_->pushed},
                     {"file", take_->file}};
-  std::string text = json_text(head);
-  text.resize((text.size() + 3) / 4 * 4, ' ');
-  const auto size = static_cast<uint32_t>(text.size());
-  std::string out(reinterpret_cast<const char*>(&size), sizeof size);
-  out += text;
-  return out.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(float));
+  return frame_bytes(head, values);
 }
 
 Json Session::summary() const {

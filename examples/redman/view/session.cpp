@@ -164,14 +164,11 @@ void Session::push() {
   if (!grab_ || grab_->leads) return;
   Grab& g = *grab_;
   const rdm_pose pose = pool_->poses(g.world)[static_cast<size_t>(g.shape)];
-  double at[3], pull[3];
-  point_of(pose, g.local, at);
-  for (size_t k = 0; k < 3; ++k) pull[k] = g.to[k] - at[k];
-  const double length = std::hypot(pull[0], pull[1], pull[2]), share = g.newton / std::max(g.reach, length);
+  double at[3];
   float force[3];
-  for (size_t k = 0; k < 3; ++k) force[k] = static_cast<float>(share * pull[k]);
+  point_of(pose, g.local, at);
+  g.force = pull_of(at, g.to, g.newton, g.reach, force);
   redman::check(rdm_pool_push(pool_->get(), g.world, g.shape, force));
-  g.force = share * length;
   if (take_ && g.world == watched_) take_->pushed = true;
 }
 

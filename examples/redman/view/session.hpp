@@ -14,6 +14,7 @@
 #include "record/recorder.hpp"
 #include "view/history.hpp"
 #include "view/lead.hpp"
+#include "view/viewed.hpp"
 
 namespace tool {
 
@@ -25,31 +26,26 @@ struct ViewSettings {
   size_t history_bytes = size_t{64} << 20;
 };
 
-class Session {
+class Session : public Viewed {
  public:
   explicit Session(ViewSettings settings);
-  ~Session();
+  ~Session() override;
 
-  // Does what a window asks for: {"do": "step"}. What to tell it: {} or {"hash": ...}; Usage or Failure where it cannot be
-  // done, and nothing changed.
-  Json command(const Document& asked);
-  // All that stays the same, until scene_number() changes.
-  Json scene() const;
-  int64_t scene_number() const { return scene_number_; }
-  // The moment that is shown, as bytes: the length of a JSON text, the text, and its numbers (view/messages.cpp). With rows of
-  // the moments after `since`, which a window has already.
-  std::string frame(int64_t since) const;
-  int64_t at() const { return at_; }
-  int32_t watched_world() const { return watched_; }  // whose numbers are told
-  int64_t changes() const { return changes_; }        // goes up when a frame would be another one
+  Json command(const Document& asked) override;
+  Json scene() const override;
+  int64_t scene_number() const override { return scene_number_; }
+  std::string frame(int64_t since) const override;
+  int64_t at() const override { return at_; }
+  int32_t watched_world() const override { return watched_; }
+  int64_t changes() const override { return changes_; }
 
-  bool plays() const { return plays_; }
-  void pause() { plays_ = false; }
-  double step_seconds() const { return static_cast<double>(pool_->spec().control_dt) / speed_; }
-  void step();  // one of the pool, from the moment that is shown; what came after that is dropped
-  int64_t steps() const { return steps_; }
-  void finish();  // of what is recorded what is whole is written
-  Json summary() const;
+  bool plays() const override { return plays_; }
+  void pause() override { plays_ = false; }
+  double step_seconds() const override { return static_cast<double>(pool_->spec().control_dt) / speed_; }
+  void step() override;  // one of the pool, from the moment that is shown; what came after that is dropped
+  int64_t steps() const override { return steps_; }
+  void finish() override;
+  Json summary() const override;
 
  private:
   // The mouse holds a point of a shape, and a spring pulls it.

@@ -91,6 +91,9 @@ const redman = window.redman = {};
     costRows($('costs'), world.costs);
     $('curves').replaceChildren(...[null, ...world.costs].map(() => document.createElement('canvas')));
     hand.open(world.actions);
+    for (const id of ['again', 'picture', 'take', 'shield', 'actors', 'stops-box', 'options-card']) $(id).hidden = !!world.fed;
+    $('mouse').querySelector('[value=lead]').disabled = !!world.fed;  // what an action does is tried in copies of worlds of this program
+    if (world.fed) $('mouse').value = 'pull';
     options();
     look(!first ? looking : world.worlds > 1 ? 'all' : /^(hand_over|catch)/.test(world.task) ? 'close' : 'front');
     opened(true);
