@@ -50,6 +50,7 @@ from ._actor import Actor
 from ._agent import Agent, Epoch
 from ._callbacks import c_function
 from ._curve import Curve, Curves, curve
+from ._episode import Episode
 from ._discovery import (Algo, Camera, Cost, Field, Joint, Option, Shape, TaskInfo, algo, algos, build, features, planner_options,
                          shield_options, task, tasks)
 from ._error import (AllocationError, ArgumentError, CancelledError, Error, FileError, FormatError, InternalError,
@@ -87,8 +88,9 @@ __version__ = version = build().version
 
 __all__ = [
     "Actor", "Agent", "Algo", "AllocationError", "ArgumentError", "Autoreset", "BaselineKind", "Build", "Callback", "Camera",
-    "CancelledError", "CloneReport", "Cost", "CostLimits", "Costs", "Curve", "Curves", "Epoch", "Error", "Evaluation", "Feature",
-    "Field", "FileError", "FormatError", "Group", "Guard", "HoldWarning", "InternalError", "Joint", "JointKind", "Map", "MapInfo",
+    "CancelledError", "CloneReport", "Cost", "CostLimits", "Costs", "Curve", "Curves", "Episode", "Epoch", "Error", "Evaluation",
+    "Feature", "Field", "FileError", "FormatError", "Group", "Guard", "HoldWarning", "InternalError", "Joint", "JointKind", "Map",
+    "MapInfo",
     "MissingFileError", "NotFoundError", "Note", "NoteKind", "Object", "Option", "OptionKind", "OptionLevel", "Options",
     "Origin", "PhysicsError", "PlanInfo", "Planner", "PlannerSpec", "Player", "Policy", "PolicyInfo", "Pool", "PoolStats",
     "Poses", "PretrainReport", "RangeError", "Ranks", "RayHit", "Recording", "RecordingInfo", "ResultCode", "Robot",

@@ -9,10 +9,13 @@ from typing import TYPE_CHECKING, Any, Callable, Mapping, Optional, Sequence, Un
 
 import numpy as np
 
-from . import _png, stats
+from . import stats
+from ._abi import ShieldKind
 from ._actor import worlds_of
 from ._discovery import TaskName, task_name
-from ._error import ArgumentError, Error, NotFoundError
+from ._episode import Episode, played
+from ._error import ArgumentError, NotFoundError
+from ._html import number, pair, share, table
 from ._library import all_cores
 from ._limits import CostLimits, each_cost
 from ._names import keywords, nearest
@@ -169,6 +172,22 @@ class Evaluation:
         pairs = [(float(low), float(high)) for low, high in ends.reshape(2, -1).T]
         return pairs if rows.ndim > 1 else pairs[0]
 
+    def _repr_html_(self) -> str:
+        """A table with intervals, for a notebook."""
+        rows = [["return", number(self.return_mean), pair(self.interval("return_mean")), "", ""]]
+        tails, means = self.interval("cost_cvar"), self.interval("cost_mean")
+        for k, limit in enumerate(self.cost_limits):
+            within = "" if limit is None else "yes" if self.cost_mean[k] <= limit else "no"
+            name = self.cost_names[k] if k < len(self.cost_names) else f"cost {k}"
+            rows.append([name, number(self.cost_mean[k]), pair(means[k]), number(limit), within])
+            rows.append([f"{name}, worst tenth", number(self.cost_cvar[k]), pair(tails[k]), "", ""])
+        for name, value in (("success", self.success_rate), ("violation", self.violation_rate)):
+            rows.append([f"episodes with {name}", share(value), pair(self.interval(f"{name}_rate"), share), "", ""])
+        rows.append(["length, control steps", number(self.length_mean), pair(self.interval("length_mean")), "", ""])
+        if self.decisions:
+            rows.append(["decisions changed by the shield", f"{self.interventions} of {self.decisions}", "", "", ""])
+        return table(["", "mean", "95 % interval", "limit", "within"], rows, f"{self.episodes} episodes")
+
     def _sound(self, rows: Array) -> Array:
         """The episodes whose sums are valid."""
         return rows[~np.isnan(self.returns)]
@@ -194,6 +213,7 @@ class _Plays:
         self._began = np.ones(pool.num_envs, np.bool_)
         self._since = np.zeros(pool.num_envs, np.int64)  # steps of an episode so far, as the shield counts them
         self._ran = np.zeros_like(pool.action)  # what it let through
+        self.stepped_in = np.zeros(pool.num_envs, np.bool_)  # whether it did in the decision that is held
 
     def act(self, mask: Optional[Array] = None) -> None:
         self._propose(mask)
@@ -201,7 +221,8 @@ class _Plays:
             decides = self._since % self._shield.steps == 0
             if mask is not None:
                 decides &= mask
-            self._shield.guard(decides)
+            kinds = self._shield.guard(decides)
+            self.stepped_in[decides] = kinds[decides] != ShieldKind.OWN
             self._ran[decides] = self._pool.action[decides]
             self._pool.action[...] = self._ran
             self._since += 1
@@ -511,21 +532,26 @@ def summary(played: Sequence[dict[str, Any]], limits: Sequence[Optional[float]],
         successes=successes, cost_names=tuple(names), **shielded, **counts)
 
 
-def strip(policy: Policy, frames: int = 6, width: int = 240, height: int = 180) -> Optional[bytes]:
-    """A PNG of moments of an episode, side by side, with the options of the policy's run; None where the task cannot be
-    created or drawn."""
-    if not policy.info.task:
-        return None
-    try:
-        with Pool(policy.info.task, autoreset="off", options=policy.origin.options if policy.origin else None) as pool:
-            pool.reset()
-            plays = _Plays(policy, pool)
-            pictures = [pool.render(width=width, height=height)]
-            while len(pictures) < frames and not (pool.terminated[0] or pool.truncated[0]):
-                plays.act()
-                pool.step()
-                if pool.episode_step[0] * (frames - 1) >= len(pictures) * pool.max_steps:
-                    pictures.append(pool.render(width=width, height=height))
-            return _png.row(pictures)
-    except Error:
-        return None
+def episode_of(policy: Policy, task: Optional[TaskName] = None, *, seed: int = 0, options: Optional[Options] = None,
+               steps: Optional[int] = None, shield: Shielding = None, shield_policy: Optional[Backup] = None) -> Episode:
+    """Policy.episode."""
+    origin = policy.origin
+    known = policy.info.task or (origin.task if origin else None)
+    name = known if task is None else task_name(task)
+    if not name:
+        raise ArgumentError("episode: say which task")
+    laid: dict[str, Any] = {}
+    limits: Optional[Mapping[str, float]] = None
+    own = None
+    if origin is not None and _folded(origin.task) == _folded(name):
+        laid, limits, own = dict(origin.options), origin.cost_limits, origin.own
+    given_options = {_folded(key) for key in options or {}}
+    laid = singly({**{key: value for key, value in laid.items() if _folded(key) not in given_options}, **(options or {})})
+    with Pool(name, 1, seed, autoreset="off", options=laid) as pool:
+        if own is not None:
+            own.ready(pool)
+        if shield and shield_policy is None and not policy.info.num_points:
+            shield_policy = policy
+        guard = shield_of(pool, shield, shield_policy, policy.info.action_repeat)
+        pool.reset()
+        return played(pool, policy, actor=policy._word, limits=limits, own=own, steps=steps, shield=guard)

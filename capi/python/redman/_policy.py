@@ -7,25 +7,29 @@ import os
 import threading
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Mapping, Optional, Union
+from typing import TYPE_CHECKING, Any, Mapping, Optional, Union
 
 import numpy as np
 
 from . import _abi, _discovery
 from ._actor import Actor, on_task
-from ._error import ArgumentError, FileError, FormatError, MissingFileError, NotFoundError, UsageError, VersionError
+from ._episode import Episode, ending_of
+from ._error import ArgumentError, Error, FileError, FormatError, MissingFileError, NotFoundError, UsageError, VersionError
 from ._export import export
 from ._files import MOST_JSON, read_bytes, read_whole, write_whole
 from ._hold import decided, warn
 from ._imported import thing_at
 from ._library import Handle, check, filled, lib, policy_folders, text
 from ._names import Hinted, nearest
-from ._options import Value
+from ._options import Options, Value
 from ._own_costs import Own
 from ._pool import Pool
 from ._rows import Array, FloatArray, clouds, given
 from ._tensors import Tensors
 
+
+if TYPE_CHECKING:
+    from ._shield import Shielding
 
 _MAGIC = b"RDMPOLIC"
 
@@ -93,7 +97,6 @@ class Policy(Hinted):
 
     _hints = {
         "predict": "policy.act(obs)", "forward": "policy.act(obs)", "parameters": "policy.tensors",
-        "render": "a policy draws itself in a notebook; the command `redman render` makes pictures and pages of an episode",
         "plot": "a policy draws itself in a notebook", "evaluate": "redman.evaluate(policy)",
         "state_dict": "policy.tensors", "task": "policy.info.task", "obs_dim": "policy.info.obs_dim",
         "action_dim": "policy.info.action_dim", "to_bytes": "bytes(policy)"}
@@ -106,6 +109,7 @@ class Policy(Hinted):
         self._handle = Handle(lib.rdm_policy_read, lib.rdm_policy_destroy, self._bytes, len(self._bytes))
         self.info = _abi.PolicyInfo(filled(_abi.rdm_policy_info, lib.rdm_policy_get_info, self._handle.value))
         self._local = threading.local()
+        self._word = "policy"  # what it is called where an episode of it is shown
 
     @classmethod
     def load(cls, source: Union[str, os.PathLike[str], bytes, bytearray, memoryview]) -> Policy:
@@ -118,7 +122,9 @@ class Policy(Hinted):
             raise MissingFileError(f"policy {path}: no run folder: there is no policy.rdm in it")
         data = read_whole(path / "policy.rdm" if path.is_dir() else path, "policy")
         try:
-            return cls(data, Origin.of_folder(path if path.is_dir() else path.parent))
+            policy = cls(data, Origin.of_folder(path if path.is_dir() else path.parent))
+            policy._word = os.fspath(source)
+            return policy
         except FormatError as error:
             text = str(error)
             raise FormatError(f"policy {path}{text[len('policy'):]}" if text.startswith("policy") else text) from None
@@ -129,7 +135,9 @@ class Policy(Hinted):
         name = _discovery.task(task).name
         for folder in policy_folders():
             if (folder / f"{name}.rdm").is_file():
-                return cls.load(folder / f"{name}.rdm")
+                policy = cls.load(folder / f"{name}.rdm")
+                policy._word = "trained"
+                return policy
         raise MissingFileError(f"policy of {name}: none in " + ", ".join(str(folder) for folder in policy_folders()))
 
     def save(self, path: Union[str, os.PathLike[str]]) -> None:
@@ -327,10 +335,41 @@ class Policy(Hinted):
         assert self._handle.value is not None
         return self._handle.value
 
+    def episode(self, task: Optional[_discovery.TaskName] = None, *, seed: int = 0, options: Optional[Options] = None,
+                steps: Optional[int] = None, shield: Shielding = None, shield_policy: Optional[Backup] = None) -> Episode:
+        """Plays an episode by the mean action, with the options of the policy's run, and returns it as a redman.Episode, which
+        draws itself in a notebook. It is the episode of `redman render` with the same seed. options override those of the run;
+        steps: at most that many control steps; shield: as in redman.evaluate."""
+        from ._play import episode_of
+        return episode_of(self, task, seed=seed, options=options, steps=steps, shield=shield, shield_policy=shield_policy)
+
+    def render(self, path: Union[str, os.PathLike[str]], *, task: Optional[_discovery.TaskName] = None, seed: int = 0,
+               options: Optional[Options] = None, steps: Optional[int] = None, shield: Shielding = None,
+               camera: Optional[str] = None, width: int = 640, height: int = 480, step: Optional[int] = None,
+               strip: int = 6) -> None:
+        """Plays an episode and writes it to a file: .html, .glb, .png, .mp4 or .gif (redman.Episode.render)."""
+        ending_of(path)
+        self.episode(task, seed=seed, options=options, steps=steps, shield=shield).render(
+            path, camera=camera, width=width, height=height, step=step, strip=strip)
+
+    def _shown(self) -> Optional[Episode]:
+        """An episode for a notebook; None where the task cannot be created or drawn."""
+        if getattr(self, "_kept", None) is None:
+            try:
+                self._kept: Optional[Episode] = self.episode()
+            except Error:
+                return None
+        return self._kept
+
+    def _repr_html_(self) -> Optional[str]:
+        """An episode of its task in 3D, with the options of its run, for a notebook."""
+        shown = self._shown()
+        return None if shown is None else shown._repr_html_()
+
     def _repr_png_(self) -> Optional[bytes]:
-        """Six moments of an episode of its task, with the options of its run, for a notebook; None for a task of your own."""
-        from ._play import strip
-        return strip(self)
+        """Six moments of that episode; None for a task of your own."""
+        shown = self._shown()
+        return None if shown is None else shown._repr_png_()
 
     def __reduce__(self) -> Any:
         return Policy, (self._bytes, self.origin)

@@ -7,7 +7,7 @@ import operator
 import threading
 from ctypes import byref, c_size_t, c_uint64
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Iterator, Mapping, Optional, Sequence, Union
+from typing import TYPE_CHECKING, Any, ContextManager, Iterator, Mapping, Optional, Sequence, Union
 
 import numpy as np
 
@@ -26,6 +26,7 @@ from ._spaces import box
 if TYPE_CHECKING:
     import numpy.typing as npt
 
+    from ._episode import Episode
     from ._ranks import Ranks
     from ._recording import Recording
 
@@ -453,6 +454,19 @@ class Pool(Hinted):
             return _png.encode(self.render(num_envs=min(16, self.num_envs), width=640, height=400))
         except Error:
             return None
+
+    def record(self, env: int = 0, actor: str = "python") -> ContextManager[Episode]:
+        """Records what is done with one world, until its episode ends: a redman.Episode, which draws itself.
+
+            with pool.record() as episode:
+                for _ in range(75):
+                    pool.step(actor())
+            episode.render("throw.html")
+
+        It sees step() and reset() of this object, not Agent.rollout. With autoreset "same_step" the last frame is missing, as
+        the step that ends an episode begins the next one."""
+        from ._episode import record
+        return record(self, int(np.arange(self.num_envs)[env]), actor)
 
     @property
     def shapes(self) -> list[_discovery.Shape]:
