@@ -142,7 +142,7 @@ class Curves(unittest.TestCase):
         run = redman.train("bandit", steps=500, envs=4, progress=False)
         with tempfile.TemporaryDirectory() as folder:
             Path(folder, "progress.csv").write_text("TotalEnvSteps,Metrics/EpRet,Metrics/EpCost\n10,1,2\n")
-            for drawn in (run, run.curve, redman.curve(folder), redman.curve(folder, folder)):
+            for drawn in (run.curve, redman.curve(folder), redman.curve(folder, folder)):
                 found = re.fullmatch('<img src="data:image/svg[+]xml;base64,([A-Za-z0-9+/=]+)">', drawn._repr_html_())
                 self.assertEqual(base64.b64decode(found[1]).decode(), drawn._repr_svg_())
 

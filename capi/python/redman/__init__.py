@@ -19,7 +19,8 @@ WHAT IS THERE. help(redman.Pool) and so on tell more.
     learners        Agent, Epoch, CostLimits, Options; Recording, CloneReport; Ranks
     policies        Policy, Actor, Origin, HoldWarning; Planner, PlanInfo; Shield, ShieldRow, project
     teams           groups, Group; Policy.groups, Policy.group; algorithms mappo, mappo_lag, happo, macpo
-    runs            train, Run; callbacks, Callback, Training; evaluate, Evaluation, Player; curve, Curve, Curves; stats
+    runs            train, Run; callbacks, Callback, Training; evaluate, Evaluation, Player; compare,
+                    Comparison; curve, Curve, Curves; stats; Episode
     your own        Rows, Costs: rewards and costs of train and evaluate; Task, RowTask, Verdict, Worlds, SceneBuilder; Robot.create,
                     Object.create, a .task file; check_task, c_function
     environments    redman.gym, redman.sb3, redman.safety, redman.omnisafe, redman.pettingzoo; make, make_vec
@@ -49,6 +50,7 @@ from ._abi import (Autoreset, BaselineKind, Build, Feature, JointKind, MapInfo, 
 from ._actor import Actor
 from ._agent import Agent, Epoch
 from ._callbacks import c_function
+from ._compare import Comparison, compare
 from ._curve import Curve, Curves, curve
 from ._episode import Episode
 from ._discovery import (Algo, Camera, Cost, Field, Joint, Option, Shape, TaskInfo, algo, algos, build, features, planner_options,
@@ -88,15 +90,16 @@ __version__ = version = build().version
 
 __all__ = [
     "Actor", "Agent", "Algo", "AllocationError", "ArgumentError", "Autoreset", "BaselineKind", "Build", "Callback", "Camera",
-    "CancelledError", "CloneReport", "Cost", "CostLimits", "Costs", "Curve", "Curves", "Episode", "Epoch", "Error", "Evaluation",
-    "Feature", "Field", "FileError", "FormatError", "Group", "Guard", "HoldWarning", "InternalError", "Joint", "JointKind", "Map",
-    "MapInfo",
+    "CancelledError", "CloneReport", "Comparison", "Cost", "CostLimits", "Costs", "Curve", "Curves", "Episode", "Epoch", "Error",
+    "Evaluation", "Feature", "Field", "FileError", "FormatError", "Group", "Guard", "HoldWarning", "InternalError", "Joint", "JointKind",
+    "Map", "MapInfo",
     "MissingFileError", "NotFoundError", "Note", "NoteKind", "Object", "Option", "OptionKind", "OptionLevel", "Options",
     "Origin", "PhysicsError", "PlanInfo", "Planner", "PlannerSpec", "Player", "Policy", "PolicyInfo", "Pool", "PoolStats",
     "Poses", "PretrainReport", "RangeError", "Ranks", "RayHit", "Recording", "RecordingInfo", "ResultCode", "Robot",
     "RobotKind", "RowTask", "Rows", "Run", "Scale", "SceneBuilder", "Sensors", "Shape", "ShapeKind", "Shield", "ShieldKind", "ShieldRow", "ShieldStats", "Spec",
     "StateError", "Status", "Task", "TaskInfo", "Training", "UnsupportedError", "UsageError", "Verdict", "VersionError", "Worlds", "__version__", "algo", "algos", "build",
-    "c_function", "callbacks", "check_task", "curve", "evaluate", "features", "groups", "load", "load_object", "load_robot", "load_task", "make",
+    "c_function", "callbacks", "check_task", "compare", "curve", "evaluate", "features", "groups", "load", "load_object", "load_robot",
+    "load_task", "make",
     "make_vec", "memory", "objects", "planner_options", "project", "robot", "robots", "sample_furthest", "shield_options",
     "spec", "stats", "task", "tasks", "train", "version",
 ]

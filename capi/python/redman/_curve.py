@@ -1,7 +1,6 @@
 """Learning curves: the columns of progress.csv, drawn as SVG without any other library."""
 from __future__ import annotations
 
-import base64
 import html
 import importlib
 import json
@@ -13,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Dict, Iterable, Mapping, Optional, Sequen
 import numpy as np
 
 from ._error import FormatError, MissingFileError, UnsupportedError
+from ._html import image
 from ._files import MOST_JSON, MOST_TEXT, read_bytes
 from ._names import Hinted
 
@@ -32,8 +32,8 @@ class _Drawn:
     def _repr_svg_(self) -> str:
         raise NotImplementedError
 
-    def _repr_html_(self) -> str:
-        return as_image(self._repr_svg_())
+    def _repr_html_(self) -> Optional[str]:
+        return image("svg+xml", self._repr_svg_().encode())
 
     def plot(self) -> _Drawn:
         """Returns the curve itself, which a notebook draws when it is the last line of a cell; elsewhere use save."""
@@ -56,11 +56,12 @@ class Curve(_Drawn, Hinted, Dict[str, Column]):
               "columns": "list(curve) has the names of the columns", "epochs": "curve['Train/Epoch']"}
 
     def __init__(self, columns: Mapping[str, Any] = {}, label: str = "", limit: Optional[float] = None,
-                 folder: str = "") -> None:
+                 folder: str = "", kind: str = "", seed: Optional[int] = None) -> None:
         super().__init__((name, np.asarray(values, np.float64)) for name, values in columns.items())
         self.label = label
         self.limit = limit  # of the first cost
         self.folder = folder  # where it was read, "" for none
+        self.kind, self.seed = kind, seed  # task and algorithm: curves of one kind with different seeds share a line
 
     @property
     def steps(self) -> Column:
@@ -93,12 +94,13 @@ class Curve(_Drawn, Hinted, Dict[str, Column]):
 
 
 class Curves(_Drawn, Hinted, Sequence[Curve]):
-    """Several runs in one picture."""
+    """Several runs in one picture. Runs of one task, algorithm and limit with different seeds are drawn as their mean in a band of
+    one standard deviation on each side, as `redman plot` does; each=True draws a line for each run."""
 
     _hints = {"show": _DRAWS, "draw": _DRAWS}
 
-    def __init__(self, curves: Iterable[Curve]) -> None:
-        self._curves = list(curves)
+    def __init__(self, curves: Iterable[Curve], each: bool = False) -> None:
+        self._curves, self.each = list(curves), each
 
     def __getitem__(self, i: Any) -> Any:
         return self._curves[i]
@@ -107,7 +109,7 @@ class Curves(_Drawn, Hinted, Sequence[Curve]):
         return len(self._curves)
 
     def _repr_svg_(self) -> str:
-        return draw(self._curves)
+        return draw(self._curves, self.each)
 
 
 def read(folder: Union[str, os.PathLike[str]]) -> Curve:
@@ -125,20 +127,75 @@ def read(folder: Union[str, os.PathLike[str]]) -> Curve:
         table = np.array(rows, dtype=np.float64).reshape(len(rows), len(names))
     except ValueError as error:
         raise FormatError(f"{path}/progress.csv: {error}") from None
-    label, limit = path.name, None
+    label, limit, kind, seed = path.name, None, "", None
     try:
         config = json.loads(read_bytes(path / "config.json", MOST_JSON))
         label = f"{config['task']} {config['algo']} seed {config['seed']}"
         limit = config["cost_limits"].get("cost")
+        kind, seed = f"{config['task']} {config['algo']}", int(config["seed"])
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         pass  # the columns alone are a curve too
-    return Curve({name: table[:, i] for i, name in enumerate(names)}, label, limit, str(path))
+    return Curve({name: table[:, i] for i, name in enumerate(names)}, label, limit, str(path), kind, seed)
 
 
-def curve(*folders: Union[str, os.PathLike[str]]) -> Union[Curve, Curves]:
-    """The curve of a run folder, or several in one picture."""
+def curve(*folders: Union[str, os.PathLike[str]], each: bool = False) -> Union[Curve, Curves]:
+    """The curve of a run folder, or several in one picture: seeds of one task and algorithm as a mean with a band, or, with
+    each=True, a line for each."""
     curves = [read(folder) for folder in folders]
-    return curves[0] if len(curves) == 1 else Curves(curves)
+    return curves[0] if len(curves) == 1 else Curves(curves, each)
+
+
+class _Line:
+    """What is drawn in one colour: a curve, or the mean of several with a band."""
+
+    def __init__(self, curves: Sequence[Curve], label: str) -> None:
+        self.curves, self.label = curves, label
+
+    def points(self, column: str) -> tuple[Column, Column, Column]:
+        """Steps, values, and half the width of the band, 0 for a single run."""
+        found = [one for one in self.curves if column in one]
+        if len(self.curves) == 1:
+            steps, values = (found[0].steps, found[0][column]) if found else (np.zeros(0), np.zeros(0))
+            return steps, values, np.zeros(len(values))
+        steps = np.arange(1, _POINTS + 1) / _POINTS * min((one.steps[-1] for one in self.curves if len(one.steps)), default=0.0)
+        rows = np.array([_on(one.steps, one[column], steps) for one in found]).reshape(len(found), _POINTS)
+        good = np.isfinite(rows)
+        count = good.sum(axis=0)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            mean = np.where(good, rows, 0).sum(axis=0) / count
+            off = np.where(good, rows - mean, 0)
+            deviation = np.sqrt((off * off).sum(axis=0) / (count - 1))
+        return steps, mean, np.where(count > 1, deviation, 0)
+
+
+_POINTS = 120  # of a mean
+
+
+def _on(steps: Column, values: Column, at: Column) -> Column:
+    """Values at other steps, on the lines between points; NaN outside of them."""
+    if not len(steps):
+        return np.full(len(at), np.nan)
+    return np.interp(at, steps, values, left=np.nan, right=np.nan)
+
+
+def lines_of(curves: Sequence[Curve], each: bool) -> list[_Line]:
+    """Curves that share a line: those of one kind and limit, whose seeds all differ."""
+    groups: dict[Any, list[Curve]] = {}
+    for number, one in enumerate(curves):
+        alone = each or not one.kind or one.seed is None
+        groups.setdefault(number if alone else (one.kind, one.limit), []).append(one)
+    lines = []
+    for group in groups.values():
+        if len({one.seed for one in group}) == len(group) > 1:
+            limits = {one.limit for one in curves if one.kind == group[0].kind}
+            limit = "" if len(limits) == 1 or group[0].limit is None else f", limit {group[0].limit:g}"
+            lines.append(_Line(group, f"{group[0].kind}{limit} ({len(group)} seeds)"))
+        else:
+            lines += [_Line([one], "") for one in group]
+    single = [line for line in lines if not line.label]
+    for line, label in zip(single, _legends([line.curves[0] for line in single])):
+        line.label = label
+    return lines
 
 
 def _ticks(low: float, high: float) -> list[float]:
@@ -159,14 +216,15 @@ def _number(value: float) -> str:
     return f"{value:g}"
 
 
-def _panel(title: str, column: str, curves: Sequence[Curve], limit: Optional[float], at: float) -> str:
+def _panel(title: str, column: str, lines: Sequence[_Line], limit: Optional[float], at: float) -> str:
     drawn = []
-    for number, one in enumerate(curves):
-        if column in one:
-            good = np.isfinite(one[column]) & np.isfinite(one.steps)
-            drawn.append((number, one.steps[good], one[column][good]))
-    values = np.concatenate([y for _, _, y in drawn] + [np.array([limit] if limit is not None else [])])
-    steps = np.concatenate([x for _, x, _ in drawn] + [np.zeros(1)])
+    for number, line in enumerate(lines):
+        line_x, line_y, half = line.points(column)
+        good = np.isfinite(line_x) & np.isfinite(line_y)
+        drawn.append((number, line_x[good], line_y[good], half[good]))
+    values = np.concatenate([end for _, _, y, half in drawn for end in (y - half, y + half)] +
+                            [np.array([limit] if limit is not None else [])])
+    steps = np.concatenate([x for _, x, _, _ in drawn] + [np.zeros(1)])
     ticks = _ticks(float(values.min()), float(values.max())) if len(values) else [0.0, 1.0]
     most = max(float(steps.max()), 1.0)
     across = [x for x in _ticks(0.0, most) if x <= most]
@@ -187,16 +245,14 @@ def _panel(title: str, column: str, curves: Sequence[Curve], limit: Optional[flo
     out.append(f'<text x="{left + _WIDTH / 2}" y="{bottom + 32}" text-anchor="middle">control steps</text>')
     if limit is not None:
         out.append(f'<path d="M{left} {y_of(limit):.1f}H{right}" stroke="#555" stroke-dasharray="5 4"/>')
-    for number, xs, ys in drawn:
-        points = " ".join(f"{x:.1f},{y:.1f}" for x, y in zip(x_of(xs), y_of(ys)))
+    for number, xs, ys, half in drawn:
         color = _COLORS[number % len(_COLORS)]
+        if half.any():
+            edge = [*zip(x_of(xs), y_of(ys + half)), *reversed([*zip(x_of(xs), y_of(ys - half))])]
+            out.append(f'<polygon points="{" ".join(f"{x:.1f},{y:.1f}" for x, y in edge)}" fill="{color}" fill-opacity="0.2"/>')
+        points = " ".join(f"{x:.1f},{y:.1f}" for x, y in zip(x_of(xs), y_of(ys)))
         out.append(f'<polyline points="{points}" fill="none" stroke="{color}" stroke-width="1.5"/>')
     return "".join(out)
-
-
-def as_image(svg: str) -> str:
-    """An HTML image that contains an SVG."""
-    return f'<img src="data:image/svg+xml;base64,{base64.b64encode(svg.encode()).decode()}">'
 
 
 def _legends(curves: Sequence[Curve]) -> list[str]:
@@ -213,18 +269,19 @@ def _legends(curves: Sequence[Curve]) -> list[str]:
     return [f"{text} #{texts[:i].count(text) + 1}" if texts.count(text) > 1 else text for i, text in enumerate(texts)]
 
 
-def draw(curves: Sequence[Curve]) -> str:
+def draw(curves: Sequence[Curve], each: bool = False) -> str:
     """Return and cost over control steps as an SVG; the dashed line is the limit."""
+    lines = lines_of(curves, each)
     limits = {one.limit for one in curves}
     limit = limits.pop() if len(limits) == 1 else None
     width = _LEFT + _WIDTH + _RIGHT
-    height = _TOP + _HEIGHT + _BOTTOM + 18 * len(curves)
+    height = _TOP + _HEIGHT + _BOTTOM + 18 * len(lines)
     legend = ""
-    for i, label in enumerate(_legends(curves)):
+    for i, line in enumerate(lines):
         y = _TOP + _HEIGHT + _BOTTOM + 18 * i
         legend += (f'<path d="M{_LEFT} {y}h24" stroke="{_COLORS[i % len(_COLORS)]}" stroke-width="2"/>'
-                   f'<text x="{_LEFT + 32}" y="{y + 4}">{html.escape(label)}</text>')
+                   f'<text x="{_LEFT + 32}" y="{y + 4}">{html.escape(line.label)}</text>')
     return (f'<svg xmlns="http://www.w3.org/2000/svg" width="{2 * width}" height="{height}" '
             f'font-family="sans-serif" font-size="11" fill="#222"><rect width="100%" height="100%" fill="#fff"/>'
-            + _panel("return", "Metrics/EpRet", curves, None, 0)
-            + _panel("cost", "Metrics/EpCost", curves, limit, width) + legend + "</svg>")
+            + _panel("return", "Metrics/EpRet", lines, None, 0)
+            + _panel("cost", "Metrics/EpCost", lines, limit, width) + legend + "</svg>")

@@ -84,9 +84,9 @@ class Feed:
         """The worlds as they are now, as a message. contacts: of which world."""
         pool, at = self.pool, slice(self.worlds.start, self.worlds.stop)
         n = len(self.worlds)
-        head = [pool.reward[at], pool.episode_return[at], pool.episode_step[at], np.where(pool.terminated[at], 2, pool.truncated[at]),
+        head: list[Array] = [pool.reward[at], pool.episode_return[at], pool.episode_step[at], np.where(pool.terminated[at], 2, pool.truncated[at]),
                 pool.success[at], np.zeros(n) if stepped_in is None else stepped_in]
-        costs = [pool.cost[at], pool.episode_cost[at]]
+        costs: list[Array] = [pool.cost[at], pool.episode_cost[at]]
         if self._own is not None:
             reward, cost = getattr(self, "_last", (np.zeros(n), np.zeros_like(self._summed)))
             head[:2], costs = [reward, self._gained], [cost, self._summed]

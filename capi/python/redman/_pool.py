@@ -14,6 +14,7 @@ import numpy as np
 from . import _abi, _discovery, _png
 from ._abi import Autoreset, BaselineKind
 from ._error import ArgumentError, Error, NotFoundError, StateError, UsageError
+from ._html import image, number, table
 from ._hold import LAST, Watch
 from ._library import (Handle, assign, check, encoded, failure, filled, int32, lib, raise_kept, raised, sized, text)
 from ._names import Hinted, keywords, nearest
@@ -454,6 +455,21 @@ class Pool(Hinted):
             return _png.encode(self.render(num_envs=min(16, self.num_envs), width=640, height=400))
         except Error:
             return None
+
+    def _repr_html_(self) -> Optional[str]:
+        """The same, above the numbers of these worlds; None before the first reset."""
+        picture = self._repr_png_()
+        if self._p is None or not self._begun:
+            return None
+        limits = [cost.limit for cost in self.costs.values()]
+        heads = ["world", "step", "return"] + [name if limit is None else f"{name} (limit {number(limit)})"
+                                               for name, limit in zip(self.cost_names, limits)] + ["success"]
+        rows = [[str(i), str(self.episode_step[i]), number(float(self.episode_return[i])),
+                 *(number(float(cost)) for cost in self.episode_cost[i]), "yes" if self.success[i] else ""]
+                for i in range(min(16, self.num_envs))]
+        drawn = "" if picture is None else f"<div>{image('png', picture)}</div>"
+        shown = f", the first {len(rows)}" if len(rows) < self.num_envs else ""
+        return drawn + table(heads, rows, f"{self.task.name}: {self.num_envs} worlds{shown}")
 
     def record(self, env: int = 0, actor: str = "python") -> ContextManager[Episode]:
         """Records what is done with one world, until its episode ends: a redman.Episode, which draws itself.

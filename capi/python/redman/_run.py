@@ -1,13 +1,16 @@
 """Run: what was learned, and how."""
 from __future__ import annotations
 
+import html
 import os
 from pathlib import Path
 from typing import Any, Callable, Mapping, Optional, Union
 
 from ._agent import Agent
 from ._curve import Curve
-from ._error import UsageError
+from ._episode import Episode
+from ._error import Error, UsageError
+from ._html import number
 from ._names import Hinted
 from ._options import Value
 from ._own_costs import Own
@@ -27,7 +30,6 @@ class Run(Hinted):
 
     _draws = "run.curve and run.policy draw themselves in a notebook; run.curve.save('curve.svg') writes the curve"
     _hints = {
-        "render": f"{_draws}; the command `redman render` makes pictures and pages of an episode",
         "model": "run.policy, or run.agent", "history": "run.curve",
         "returns": "run.curve.returns", "costs": "run.curve.costs"}
 
@@ -38,6 +40,7 @@ class Run(Hinted):
         self.folder, self.policy = folder, policy
         self.env_steps = 0
         self.seconds = 0.0
+        self._judged: Optional[tuple[Policy, Evaluation]] = None
         self.interrupted = False  # it has fewer steps than it was to have
         self._own = own
         self._agent: Union[Agent, Callable[[], Agent]] = agent
@@ -62,7 +65,7 @@ class Run(Hinted):
     def curve(self) -> Curve:
         """Progress of the epochs."""
         return Curve(self._rows, f"{self.task} {self.algo} seed {self.seed}", next(iter(self.cost_limits.values()), None),
-                     str(self.folder or ""))
+                     str(self.folder or ""), f"{self.task} {self.algo}", self.seed)
 
     @property
     def epochs(self) -> list[dict[str, float]]:
@@ -111,11 +114,34 @@ class Run(Hinted):
         return evaluate(self.policy, episodes=episodes, num_envs=num_envs, seed=seed, threads=threads, shield=shield,
                         shield_policy=shield_policy)
 
+    def episode(self, **settings: Any) -> Episode:
+        """Plays an episode of its policy: Policy.episode."""
+        return self.policy.episode(**settings)
+
+    def render(self, path: Union[str, os.PathLike[str]], **settings: Any) -> None:
+        """Plays an episode of its policy and writes it to a file: .html, .glb, .png, .mp4 or .gif (Policy.render)."""
+        self.policy.render(path, **settings)
+
+    def judged(self) -> Evaluation:
+        """evaluate() with its defaults, played once for each policy: what a notebook and redman.compare show."""
+        if self._judged is None or self._judged[0] is not self.policy:
+            self._judged = self.policy, self.evaluate()
+        return self._judged[1]
+
     def _repr_svg_(self) -> str:
         return self.curve._repr_svg_()
 
     def _repr_html_(self) -> str:
-        return self.curve._repr_html_()
+        """An episode in 3D, the curve, and its evaluation, for a notebook."""
+        limits = ", ".join(f"{name} {number(limit)}" for name, limit in self.cost_limits.items() if limit is not None)
+        facts = [f"<b>{html.escape(self.task)}</b>, {html.escape(self.algo)}, seed {self.seed}", f"{self.env_steps:,} control steps in {self.seconds:.0f} s"]
+        facts += [f"limits: {html.escape(limits)}"] if limits else []
+        parts = [f"<p>{'; '.join(facts)}</p>", self.policy._repr_html_() or "", f"<div>{self.curve._repr_html_()}</div>"]
+        try:
+            parts.append(self.judged()._repr_html_())
+        except Error as error:  # what it learned by is not here, as a lambda
+            parts.append(f"<p>{html.escape(str(error))}</p>")
+        return "".join(parts)
 
     def __repr__(self) -> str:
         return f"<Run {self.task} {self.algo} seed {self.seed}: {self.env_steps} steps in {self.seconds:.0f} s>"

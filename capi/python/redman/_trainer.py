@@ -451,6 +451,7 @@ class Trainer(Training):
     def _own(self, policy: Policy) -> Policy:
         """The policy with the settings to evaluate it by."""
         limits = {name: limit for name, limit in zip(self.cost_names, self.limits) if limit is not None}
+        policy._word = self.settings.algo
         policy.origin = Origin(self.settings.task, self.settings.options, limits, self._magnitudes,
                                None if self.run.folder is None else str(self.run.folder), self.settings.own)
         return policy

@@ -23,7 +23,7 @@ import numpy as np
 from ._error import ArgumentError, UsageError
 from ._rows import Array
 
-__all__ = ["Improvement", "improvement", "interval", "iqm", "normalised", "ranks"]
+__all__ = ["Improvement", "difference", "improvement", "interval", "iqm", "letters", "normalised", "ranks"]
 
 Scores = Union[Mapping[Any, Any], Sequence[Any], Array]
 Samples = Sequence[Array]  # numbers of rows that were drawn, [resamples][rows] of each stratum
@@ -91,6 +91,47 @@ def improvement(a: Scores, b: Scores, level: float = 0.95) -> Improvement:
     sizes = [len(runs) for runs in (*ours.values(), *(theirs[task] for task in ours))]
     low, high = bootstrap(sizes, statistic, level)
     return Improvement(float(np.mean([s.mean() for s in won])), float(low), float(high))
+
+
+def difference(a: Scores, b: Scores, level: float = 0.95) -> tuple[float, float]:
+    """The interval of iqm(a) - iqm(b), by the bootstrap of interval() over the runs of both. If it does not contain 0, the two
+    differ: that tests more sharply than two intervals that must not overlap."""
+    ours, theirs = _of_several(a, "a"), _of_several(b, "b")
+    _need_same(ours, theirs, "a", "b")
+    rows = [*ours.values(), *(theirs[task] for task in ours)]
+
+    def statistic(drawn: Samples) -> Array:
+        picked = [runs[at] for runs, at in zip(rows, drawn)]
+        both = [iqm_of(np.concatenate(half, axis=1)) for half in (picked[:len(ours)], picked[len(ours):])]
+        of_both: Array = both[0] - both[1]
+        return of_both
+
+    low, high = bootstrap([len(runs) for runs in rows], statistic, level)
+    return float(low), float(high)
+
+
+def letters(scores: Mapping[str, Scores], level: float = 0.95) -> dict[str, str]:
+    """The groups of algorithms, {algorithm: scores by task}, as letters, the best group "a": two without a common letter differ,
+    because the interval of difference() does not contain 0, as in `redman compare` and `redman report`. An algorithm with a
+    single run of a task has none (Piepho: An Algorithm for a Letter-Based Representation of All-Pairwise Comparisons, J. of
+    Computational and Graphical Statistics 13, 2004)."""
+    tasks = {name: _by_task(rows, name) for name, rows in scores.items()}
+    names = sorted((name for name in tasks if all(len(runs) > 1 for runs in tasks[name].values())), key=lambda name: -iqm(scores[name]))
+    groups: list[list[str]] = [names] if names else []
+    for i, one in enumerate(names):
+        for other in names[i + 1:]:
+            low, high = difference(scores[one], scores[other], level)
+            if low <= 0 <= high:
+                continue
+            kept = [group for group in groups if one not in group or other not in group]
+            split = [[name for name in group if name != left] for group in groups if one in group and other in group
+                     for left in (other, one)]
+            for group in sorted(split, key=len, reverse=True):
+                if not any(set(group) <= set(whole) for whole in kept):
+                    kept.append(group)
+            groups = kept
+    groups.sort(key=lambda group: [names.index(name) for name in group])
+    return {name: "".join(chr(ord("a") + k) for k, group in enumerate(groups[:26]) if name in group) for name in tasks}
 
 
 def normalised(value: Any, low: Any, high: Any) -> Any:
