@@ -6,8 +6,12 @@ import pickle
 import re
 import subprocess
 import sys
+import tempfile
+import types
 import unittest
 import warnings
+from pathlib import Path
+from unittest import mock
 
 import numpy as np
 
@@ -140,6 +144,46 @@ class Rules(unittest.TestCase):
             env.step(-np.ones(40, np.float32))
             self.assertTrue(same(obs, kept))
             self.assertTrue(same(stepped[4]["costs"], kept_costs))
+
+    def test_pictures_since_the_last_call(self):
+        for mode, what in (("rgb_array_list", "rgb"), ("depth_array_list", "depth")):
+            with gym.Env("ball_run", render_mode=mode, width=32, height=24) as env:
+                env.reset(seed=1)
+                seen = [env.pool.render(0, None, 32, 24, what)]
+                for _ in range(3):
+                    env.step(np.ones(2, np.float32))
+                    seen.append(env.pool.render(0, None, 32, 24, what))
+                self.assertTrue(same(env.render(), seen))
+                self.assertEqual(env.render(), [])
+                env.step(np.ones(2, np.float32))
+                self.assertEqual(len(env.render()), 1)
+        with gym.VectorEnv("ball_run", 2, render_mode="rgb_array_list", width=32, height=24, autoreset_mode="Disabled") as env:
+            env.reset(seed=1)
+            env.step(np.ones((2, 2), np.float32))
+            env.reset(options={"reset_mask": np.array([True, False])})
+            self.assertEqual([len(pictures) for pictures in env.render()], [3, 2])
+            self.assertEqual([len(pictures) for pictures in env.render()], [0, 0])
+
+    def test_observe_is_modality_in_other_words(self):
+        options = {"modality": "rgb+depth+points"}
+        with gym.Env("grasp", options=options) as one, gym.Env("grasp", observe=["state", "rgb", "depth", "points"]) as other, \
+                gym.Env("grasp", observe="rgb+depth") as blind, gym.Env("grasp", observe="state") as plain:
+            self.assertEqual(one.observation_space, other.observation_space)
+            self.assertEqual(list(blind.observation_space), ["rgb", "depth"])
+            self.assertEqual(plain.observation_space.shape, (plain.pool.obs_dim,))
+            first = one.reset(seed=3)[0]
+            self.assertTrue(same(first, other.reset(seed=3)[0]))
+            obs = blind.reset(seed=3)[0]
+            self.assertEqual(list(obs), ["rgb", "depth"])
+            self.assertTrue(same(obs["rgb"], first["rgb"]))
+            self.assertIn(blind.step(blind.action_space.sample())[0], blind.observation_space)
+        with gym.VectorEnv("grasp", 2, observe=["depth"]) as envs:
+            self.assertEqual(envs.reset(seed=3)[0]["depth"].shape[0], 2)
+        for wrong, words in ((["rgb", "rgb"], "differ"), ([], "differ"), ("rgbb", "rgbb")):
+            with self.assertRaisesRegex(ValueError, words):
+                gym.Env("grasp", observe=wrong)
+        with self.assertRaisesRegex(ValueError, "say the same"):
+            gym.Env("grasp", observe="rgb", options=options)
 
     def test_render(self):
         with gym.Env("hand_over_safe_finger", render_mode="rgb_array", width=64, height=48) as env:
@@ -555,6 +599,54 @@ class WithGymnasium(unittest.TestCase):
                     self.assertTrue(same(ours.reset(), theirs.reset()))
                     ours.close()
                     theirs.close()
+
+    def test_videos_have_a_picture_of_every_step(self):
+        """RecordVideo, over a stand-in for moviepy that keeps what it is given."""
+        import gymnasium
+        from gymnasium.wrappers import RecordVideo
+        films = {}
+
+        class Clip:
+            def __init__(self, frames, fps):
+                self.frames, self.fps = [frame.copy() for frame in frames], fps
+
+            def write_videofile(self, path, **_):
+                films[Path(path).name] = self
+
+        module = types.ModuleType("moviepy.video.io.ImageSequenceClip")
+        module.ImageSequenceClip = Clip
+        names = ["moviepy", "moviepy.video", "moviepy.video.io"]
+        modules = {**{name: types.ModuleType(name) for name in names}, module.__name__: module}
+        made = {"width": 32, "height": 24, "options": {"max_steps": 5}}
+        with tempfile.TemporaryDirectory() as folder, mock.patch.dict(sys.modules, modules):
+            for mode in ("rgb_array", "rgb_array_list"):
+                films.clear()
+                env = RecordVideo(gymnasium.make(gym.env_id("ball_run"), render_mode=mode, **made), folder + "/" + mode,
+                                  episode_trigger=lambda _: True)
+                pool = env.unwrapped.pool
+                expected = []
+                for seed in (1, 2):
+                    env.reset(seed=seed)
+                    expected.append([pool.render(width=32, height=24)])
+                    for _ in range(5):
+                        env.step(np.ones(2, np.float32))
+                        expected[-1].append(pool.render(width=32, height=24))
+                env.close()
+                self.assertEqual(sorted(films), ["rl-video-episode-0.mp4", "rl-video-episode-1.mp4"])
+                for (_, film), pictures in zip(sorted(films.items()), expected):
+                    self.assertEqual((len(film.frames), film.fps), (6, 60))
+                    self.assertTrue(same(film.frames, pictures))
+
+    def test_dicts_go_through_its_hands(self):
+        import gymnasium
+        from gymnasium.spaces.utils import flatdim
+        from gymnasium.utils.env_checker import check_env
+        env = gymnasium.make(gym.env_id("grasp"), observe=["state", "rgb", "depth", "points"],
+                             options={"image_width": 16, "image_height": 12, "points": 32})
+        self.assertIsInstance(env.observation_space, gymnasium.spaces.Dict)
+        self.assertGreater(flatdim(env.observation_space), env.unwrapped.pool.obs_dim)
+        check_env(env.unwrapped, skip_render_check=True)
+        env.close()
 
     def test_wrappers(self):
         import gymnasium

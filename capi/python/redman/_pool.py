@@ -479,7 +479,7 @@ class Pool(Hinted):
                     pool.step(actor())
             episode.render("throw.html")
 
-        It sees step() and reset() of this object, not Agent.rollout. With autoreset "same_step" the last frame is missing, as
+        It records step() and reset() of this object, not Agent.rollout. With autoreset "same_step" the last frame is missing, as
         the step that ends an episode begins the next one."""
         from ._episode import record
         return record(self, int(np.arange(self.num_envs)[env]), actor)

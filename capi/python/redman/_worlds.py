@@ -21,6 +21,7 @@ from ._shield import NAMES, Shielding, shield_of
 
 Center = Union[None, str, Sequence[float], Array]
 Seeds = Union[None, int, Sequence[Optional[int]]]
+Observe = Union[None, str, Sequence[str]]  # "state" and words of option modality, as a list or joined by +
 
 
 def center_of(pool: Pool, center: Center) -> Optional[FloatArray]:
@@ -37,6 +38,21 @@ def center_of(pool: Pool, center: Center) -> Optional[FloatArray]:
     return given
 
 
+def _modality(observe: Observe, options: Mapping[str, Any]) -> tuple[dict[str, Any], bool]:
+    """The options with observe as modality, and whether there is no row."""
+    if observe is None:
+        return dict(options), False
+    words = observe.split("+") if isinstance(observe, str) else list(observe)
+    given = next((key for key in options if key.lower().replace("-", "_") == "modality"), None)
+    if given is not None:
+        raise ArgumentError(f"observe and option {given} say the same; give one of them")
+    if not words or len(set(words)) < len(words):
+        raise ArgumentError(f"observe: {observe!r} is no list of words that differ, such as [\"state\", \"rgb\"]")
+    if words == ["state"]:
+        return dict(options), False
+    return {**options, "modality": "+".join(word for word in words if word != "state")}, "state" not in words
+
+
 class Worlds:
     """num_envs worlds of a task in one pool.
 
@@ -46,14 +62,15 @@ class Worlds:
     shield: a redman.Shield checks every action; True or a dict of its options, budgets, seed and threads; None: no shield.
     shield_policy: its first backup, whose decisions last a step.
     senses: "" where pictures and clouds are observations; else why they cannot be, and option modality is refused.
+    observe: option modality in other words.
     """
 
     def __init__(self, task: str, num_envs: int, *, seed: Optional[int] = None, autoreset: str = "off",
                  options: Optional[Mapping[str, Any]] = None, threads: int = 0,
                  action_repeat: Union[int, str] = 1, center: Center = None, camera: Optional[str] = None,
                  width: int = 320, height: int = 240, shield: Shielding = None, shield_policy: Optional[Backup] = None,
-                 senses: str = "") -> None:
-        options = dict(options or {})
+                 senses: str = "", observe: Observe = None) -> None:
+        options, self.stateless = _modality(observe, options or {})  # stateless: observations have no row
         if action_repeat != 1:
             options["action_repeat"] = 0 if action_repeat == "task" else action_repeat
         self.seed: Seeds = secrets.randbits(63) if seed is None else int(seed)
@@ -77,6 +94,8 @@ class Worlds:
         self.cost, self.terminated, self.truncated = pool.cost, pool.terminated, pool.truncated
         self.success, self.status, self.episode_status = pool.success, pool.status, pool.episode_status
         self.senses = Senses(pool)
+
+    stateless = False
 
     def __getstate__(self) -> dict[str, Any]:
         rows = ("obs", "final_obs", "action", "reward", "cost", "terminated", "truncated", "success", "status",

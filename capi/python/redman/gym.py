@@ -36,7 +36,7 @@ from ._policy import Backup
 from ._pool import Pool
 from ._rows import Array
 from ._shield import Shield, Shielding
-from ._worlds import Center, Seeds, Worlds
+from ._worlds import Center, Observe, Seeds, Worlds
 
 try:
     import gymnasium
@@ -65,22 +65,26 @@ _OLD = gymnasium is not None and gymnasium.__version__.startswith("0.")
 
 
 _PICTURES = {"rgb_array": "rgb", "depth_array": "depth"}  # render_mode: what Pool.render calls it
+_MODES_OF_RENDER = [*_PICTURES, *(f"{mode}_list" for mode in _PICTURES)]
 
 
 class _Named:
     """What Env and VectorEnv have in common."""
 
     worlds: Worlds
-    metadata = {"render_modes": list(_PICTURES), "render_fps": 60}
+    metadata = {"render_modes": _MODES_OF_RENDER, "render_fps": 60}
     _spec: Any = None
+    _kept: list[list[Array]] = []  # pictures of each world since render(), in the modes that end in _list
 
     def _begin(self, worlds: Worlds, render_mode: Optional[str], named: bool) -> tuple[Any, Any]:
         """Takes over the worlds; returns the spaces of one of them."""
-        if render_mode is not None and render_mode not in _PICTURES:
-            raise ArgumentError(f"render_mode: None, {' or '.join(map(repr, _PICTURES))}, not {render_mode!r}")
+        if render_mode is not None and render_mode not in _MODES_OF_RENDER:
+            raise ArgumentError(f"render_mode: None, {', '.join(map(repr, _MODES_OF_RENDER))}, not {render_mode!r}")
+        if render_mode is not None and render_mode.endswith("_list"):
+            self._kept = [[] for _ in range(worlds.pool.num_envs)]
         self.worlds, self.render_mode, self.named = worlds, render_mode, named
         self.fields, self.cost_names = worlds.fields, worlds.cost_names
-        self.metadata = {"render_modes": list(_PICTURES), "render_fps": max(1, round(1 / worlds.seconds))}
+        self.metadata = {"render_modes": _MODES_OF_RENDER, "render_fps": max(1, round(1 / worlds.seconds))}
         low, high = worlds.obs_low, worlds.obs_high
         obs: Any = Box(low, high, dtype=np.float32)
         if named:
@@ -88,7 +92,7 @@ class _Named:
         elif worlds.senses:
             obs = {"state": obs}
         if isinstance(obs, dict):  # as pairs: Gymnasium sorts a dict by name
-            obs = Dict(list({**obs, **worlds.senses.spaces(Box)}.items()))
+            obs = Dict(list({**({} if worlds.stateless else obs), **worlds.senses.spaces(Box)}.items()))
         return obs, Box(worlds.action_low, worlds.action_high, dtype=np.float32)
 
     @property
@@ -128,6 +132,8 @@ class _Named:
         """Observations in the form of the observation space, with what the worlds see."""
         if not self.named and not self.worlds.senses:
             return rows
+        if self.worlds.stateless:
+            return self.worlds.senses.seen(env)
         entries = {name: rows[..., at] for name, at in self.fields.items()} if self.named else {"state": rows}
         return {**entries, **self.worlds.senses.seen(env)}
 
@@ -153,9 +159,21 @@ class _Named:
                    for key, value in self._told_of(i).items()}
         return {**nothing, **{key: rows.item(i) for key, rows in self._flags().items()}}
 
-    def _pictured(self, i: int) -> Array:
-        """The picture of a world, in the form of render_mode."""
-        return self.worlds.render(i, _PICTURES[str(self.render_mode)])
+    def _picture(self, i: int) -> Array:
+        return self.worlds.render(i, _PICTURES[str(self.render_mode).removesuffix("_list")])
+
+    def _pictured(self, i: int) -> Any:
+        """The picture of a world, in the form of render_mode; in a mode that ends in _list, those since the last call."""
+        if not self._kept:
+            return self._picture(i)
+        pictures, self._kept[i] = self._kept[i], []
+        return pictures
+
+    def _keep(self, mask: Optional[Array] = None) -> None:
+        """Draws the worlds that were stepped or reset, where render() gives all pictures."""
+        for i, pictures in enumerate(self._kept):
+            if mask is None or mask[i]:
+                pictures.append(self._picture(i))
 
 
 class Env(_Named, _Env):
@@ -169,13 +187,15 @@ class Env(_Named, _Env):
     shield: True, or a dict of the options of a redman.Shield, its budgets, seed and threads. shield_policy: its first
     backup, a policy, its file or run folder, or "trained"; it must hold its actions for as many control steps as a step has.
     named: observations are a dict with an entry for each field.
+    observe: what an observation has, of "state", "rgb", "depth", "segmentation", "points" and "voxels", as a list or joined by +:
+    option modality in other words. Without "state" it has no row.
     """
 
     def __init__(self, task: str, *, seed: Optional[int] = None, options: Optional[Mapping[str, Any]] = None,
                  render_mode: Optional[str] = None, camera: Optional[str] = None, width: int = 320, height: int = 240,
                  action_repeat: Union[int, str] = 1, center: Center = None, named: bool = False, shield: Shielding = None,
-                 shield_policy: Optional[Backup] = None) -> None:
-        worlds = Worlds(task, 1, seed=seed, options=options, action_repeat=action_repeat, center=center,
+                 shield_policy: Optional[Backup] = None, observe: Observe = None) -> None:
+        worlds = Worlds(task, 1, seed=seed, options=options, observe=observe, action_repeat=action_repeat, center=center,
                         camera=camera, width=width, height=height, shield=shield, shield_policy=shield_policy)
         self.observation_space, self.action_space = self._begin(worlds, render_mode, named)
 
@@ -184,6 +204,7 @@ class Env(_Named, _Env):
         self.worlds.no_options(options)
         super().reset(seed=seed)
         self.worlds.reset(seed if seed is None else [seed])
+        self._keep()
         return self._seen(self.worlds.obs[0].copy(), 0), self._began_of(0)
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, Info]:
@@ -191,11 +212,14 @@ class Env(_Named, _Env):
         w = self.worlds
         w.act_alone(action)
         w.pool.step()
+        if self._kept:
+            self._keep()
         return (self._seen(w.obs[0].copy(), 0), w.reward.item(0), w.terminated.item(0), w.truncated.item(0),
                 self._told_of(0))
 
-    def render(self) -> Optional[Array]:
-        """A picture [height][width][3] or depth [height][width] in m, 0 where there is nothing; None without a render_mode."""
+    def render(self) -> Any:
+        """A picture [height][width][3] or depth [height][width] in m, 0 where there is nothing; None without a render_mode. With
+        "rgb_array_list" and "depth_array_list", a list of those of all steps and resets since the last call."""
         return self._pictured(0) if self.render_mode else None
 
     def close(self) -> None:
@@ -221,13 +245,14 @@ class VectorEnv(_Named, _VectorEnv):
                  copy: bool = True, render_mode: Optional[str] = None, camera: Optional[str] = None, width: int = 320,
                  height: int = 240, action_repeat: Union[int, str] = 1, center: Center = None,
                  named: bool = False, max_episode_steps: Optional[int] = None, shield: Shielding = None,
-                 shield_policy: Optional[Backup] = None) -> None:
+                 shield_policy: Optional[Backup] = None, observe: Observe = None) -> None:
         mode = getattr(autoreset_mode, "value", autoreset_mode) or ("SameStep" if _OLD else "NextStep")
         if mode not in _MODES:
             raise ArgumentError(f"autoreset_mode: {', '.join(_MODES)}, not {mode}")
         worlds = Worlds(task, num_envs, seed=seed, autoreset=_MODES[mode], options=options, threads=threads,
                         action_repeat=action_repeat, center=center, camera=camera, width=width, height=height,
-                        shield=shield, shield_policy=shield_policy, senses=_NO_LAST_LOOK if mode == "SameStep" else "")
+                        shield=shield, shield_policy=shield_policy, observe=observe,
+                        senses=_NO_LAST_LOOK if mode == "SameStep" else "")
         if max_episode_steps not in (None, worlds.max_episode_steps):  # what make_vec hands on of a spec is our own
             raise ArgumentError(f"max_episode_steps: {max_episode_steps}, but an episode has {worlds.max_episode_steps} "
                                 "steps; options={'max_steps': n} makes it n control steps")
@@ -252,6 +277,7 @@ class VectorEnv(_Named, _VectorEnv):
         self.worlds.reset(seed, mask)
         self._ended = np.zeros(self.num_envs, bool) if mask is None else self._ended & ~mask
         began = np.ones(self.num_envs, bool) if mask is None else mask
+        self._keep(mask)
         return self._observed(), self._rows(self._told_but(began), began)
 
     def step(self, actions: Any) -> tuple[Any, Array, Array, Array, Info]:
@@ -259,6 +285,8 @@ class VectorEnv(_Named, _VectorEnv):
         w = self.worlds
         w.act(actions)
         w.pool.step()
+        if self._kept:
+            self._keep()
         was_ended, self._ended = self._ended, w.terminated | w.truncated
         return (self._observed(), w.reward.astype(np.float64), w.terminated.copy(), w.truncated.copy(),
                 self._infos(was_ended))
@@ -327,8 +355,8 @@ class VectorEnv(_Named, _VectorEnv):
     def reset_wait(self, seed: Seeds = None, options: Optional[dict[str, Any]] = None) -> Any:
         return self.reset(seed=seed, options=options)
 
-    def render(self) -> Optional[tuple[Array, ...]]:
-        """A picture of each world, or None without a render_mode."""
+    def render(self) -> Optional[tuple[Any, ...]]:
+        """A picture of each world, or None without a render_mode; in the modes that end in _list, a list for each world."""
         return tuple(self._pictured(i) for i in range(self.num_envs)) if self.render_mode else None
 
     def close_extras(self, **_: Any) -> None:
