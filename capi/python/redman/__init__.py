@@ -20,7 +20,8 @@ WHAT IS THERE. help(redman.Pool) and so on tell more.
     policies        Policy, Actor, Origin, HoldWarning; Planner, PlanInfo; Shield, ShieldRow, project
     teams           groups, Group; Policy.groups, Policy.group; algorithms mappo, mappo_lag, happo, macpo
     runs            train, Run; callbacks, Callback, Training; evaluate, Evaluation, Player; compare,
-                    Comparison; curve, Curve, Curves; stats; Episode
+                    Comparison; curve, Curve, Curves; stats;
+                    Episode; view, Window
     your own        Rows, Costs: rewards and costs of train and evaluate; Task, RowTask, Verdict, Worlds, SceneBuilder; Robot.create,
                     Object.create, a .task file; check_task, c_function
     environments    redman.gym, redman.sb3, redman.safety, redman.omnisafe, redman.pettingzoo; make, make_vec
@@ -83,6 +84,7 @@ from ._teach import CloneReport
 from ._team import Group, groups
 from ._run import Run
 from ._train import train
+from ._window import Window, view
 from ._worlds_rows import Worlds
 from .callbacks import Callback, Training
 
@@ -97,11 +99,11 @@ __all__ = [
     "Origin", "PhysicsError", "PlanInfo", "Planner", "PlannerSpec", "Player", "Policy", "PolicyInfo", "Pool", "PoolStats",
     "Poses", "PretrainReport", "RangeError", "Ranks", "RayHit", "Recording", "RecordingInfo", "ResultCode", "Robot",
     "RobotKind", "RowTask", "Rows", "Run", "Scale", "SceneBuilder", "Sensors", "Shape", "ShapeKind", "Shield", "ShieldKind", "ShieldRow", "ShieldStats", "Spec",
-    "StateError", "Status", "Task", "TaskInfo", "Training", "UnsupportedError", "UsageError", "Verdict", "VersionError", "Worlds", "__version__", "algo", "algos", "build",
-    "c_function", "callbacks", "check_task", "compare", "curve", "evaluate", "features", "groups", "load", "load_object", "load_robot",
-    "load_task", "make",
+    "__version__", "algo", "algos", "build", "c_function", "callbacks", "check_task", "compare", "curve", "evaluate", "features", "groups",
+    "load", "load_object", "load_robot", "load_task", "make", "StateError", "Status", "Task", "TaskInfo", "Training", "UnsupportedError",
+    "UsageError", "Verdict", "VersionError", "Window", "Worlds",
     "make_vec", "memory", "objects", "planner_options", "project", "robot", "robots", "sample_furthest", "shield_options",
-    "spec", "stats", "task", "tasks", "train", "version",
+    "spec", "stats", "task", "tasks", "train", "version", "view",
 ]
 
 moved(globals(), __all__)  # what is public is of this module, in texts and in pickles

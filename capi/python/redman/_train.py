@@ -26,7 +26,7 @@ from ._run_folder import FolderPath, RunFolder, read_config
 from ._shield import Shielding
 from ._teacher import Teach, Teacher, eyes_of
 from ._trainer import Settings, Trainer, folded, limit_texts, shield_word, split_options
-from .callbacks import Callbacks, Calls
+from .callbacks import Callbacks, Calls, View
 
 _MOST_STEPS = 1 << 53  # what a float counts exactly
 T = TypeVar("T")
@@ -80,7 +80,7 @@ def train(task: Optional[_discovery.TaskName] = ..., algo: str = ..., steps: Opt
           overwrite: bool = ..., task_file: Optional[FolderPath] = ..., *, checkpoint_every: int = ..., tensorboard: bool = ...,
           resume: Optional[FolderPath] = ..., from_: Teacher = ..., teach: Optional[Mapping[str, Any]] = ...,
           time_budget: Optional[float] = ..., shield: Union[Shielding, str] = ..., reward: Optional[RowFunction] = ...,
-          costs: Optional[Costs] = ..., ranks: Union[None, Ranks, int, str] = ..., **keyword_options: Any) -> Run: ...
+          costs: Optional[Costs] = ..., ranks: Union[None, Ranks, int, str] = ..., view: bool = ..., **keyword_options: Any) -> Run: ...
 
 
 @overload
@@ -105,7 +105,7 @@ def train(task: Any = None, algo: Any = "ppo_lag", steps: Optional[float] = None
           overwrite: bool = False, task_file: Optional[FolderPath] = None, *, checkpoint_every: int = 10,
           tensorboard: bool = True, resume: Any = None, from_: Teacher = None, teach: Optional[Mapping[str, Any]] = None,
           time_budget: Optional[float] = None, shield: Union[Shielding, str] = None, reward: Optional[RowFunction] = None,
-          costs: Optional[Costs] = None, ranks: Union[None, Ranks, int, str] = None) -> Any:
+          costs: Optional[Costs] = None, ranks: Union[None, Ranks, int, str] = None, view: bool = False) -> Any:
     """Trains a policy on a task, as `redman train` does: the same arguments give the same bytes in the same files.
 
         run = redman.train("hand_over_safe_finger", steps=1e6, seed=1, out="runs/first")
@@ -146,7 +146,8 @@ def train(task: Any = None, algo: Any = "ppo_lag", steps: Optional[float] = None
     callback: a function of the epoch or of (epoch, training), an object of redman.callbacks, or a list of these. A true
     result ends the run; training.set(...) changes options. shield: a redman.Shield checks every decision; True, a dict of
     its options, or "project". ranks: this process is one of several that learn as one (redman.Ranks): each of them calls
-    train with the same arguments, envs is the number of worlds of all, and the first rank writes and evaluates.
+    train with the same arguments, envs is the number of worlds of all, and the first rank writes and evaluates. view: a
+    window in the browser shows the policy as it is after each epoch (redman.callbacks.View).
 
     A list of tasks, algorithms or seeds makes one run for each combination and returns a list. out is then the folder that
     holds their folders, ALGO-{TASK}/seed-N.
@@ -178,7 +179,7 @@ def _several(arguments: dict[str, Any]) -> list[Run]:
 
 def _one(given: dict[str, Any]) -> tuple[Run, bool]:
     """Makes one run; returns it and whether a signal ended it."""
-    calls = Calls(given["callback"])
+    calls = Calls(given["callback"], [View()] if given["view"] else [])
     ranks, budget = _ranks(given["ranks"]), given["time_budget"]
     if budget is not None and not budget > 0:
         raise ArgumentError(f"time_budget: {budget} is not above 0 s")
@@ -276,7 +277,7 @@ def task_class_of(name: str) -> Optional[str]:
     return None if found is None else path_of(found.kind)
 
 
-_OF_RESUME = ("steps", "threads", "callback", "progress", "time_budget", "ranks", "resume", "reward", "costs", "overwrite")
+_OF_RESUME = ("steps", "threads", "callback", "progress", "time_budget", "ranks", "resume", "reward", "costs", "overwrite", "view")
 
 
 def _continued(given: Mapping[str, Any]) -> Settings:

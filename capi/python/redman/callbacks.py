@@ -95,9 +95,9 @@ Callbacks = Union[None, Function, Callback, "Sequence[Union[Function, Callback]]
 class Calls(Callback):
     """Calls several callbacks, one after the other."""
 
-    def __init__(self, given: Callbacks) -> None:
+    def __init__(self, given: Callbacks, more: Sequence[Callback] = ()) -> None:
         listed: Any = [] if given is None else given if isinstance(given, (list, tuple)) else [given]
-        self._all: list[Callback] = [_callback(each) for each in listed]
+        self._all: list[Callback] = [*(_callback(each) for each in listed), *more]
 
     def on_begin(self, training: Training) -> bool:
         return any([bool(each.on_begin(training)) for each in self._all])
@@ -211,6 +211,31 @@ class TensorBoard(Callback):
             self._writer.flush()
 
 
+class View(Callback):
+    """Opens a window in the browser, redman.view, on the policy as it is after each epoch: it plays in worlds of its own, with the
+    options of the run, while somebody looks. train(view=True) is this callback with its defaults."""
+
+    def __init__(self, num_envs: int = 1, browser: bool = True, port: int = 0) -> None:
+        self._num_envs, self._browser, self._port = num_envs, browser, port
+        self.window: Any = None  # redman.Window
+
+    def on_begin(self, training: Training) -> None:
+        from ._play import singly
+        from ._pool import Pool
+        from ._window import Playing
+        pool = Pool(training.run.task, self._num_envs, training.run.seed, autoreset="off", options=singly(training.run.options))
+        self._playing = Playing(training.agent.policy(), pool, actor=training.run.algo, browser=self._browser, port=self._port,
+                                paused=False, limits=training.run.cost_limits)
+        self.window = self._playing.window
+
+    def on_epoch(self, epoch: Epoch, training: Training) -> None:
+        self._playing.show(training.agent.policy())
+
+    def on_end(self, training: Training) -> None:
+        if self.window is not None:
+            self.window.close()
+
+
 class WandB(Callback):
     """Sends the curve to Weights & Biases. settings: arguments of wandb.init; its config has the settings of the run. A run of
     wandb that is already active is used, and stays open."""
@@ -277,4 +302,4 @@ def _flat(config: Mapping[str, Any], before: str = "") -> dict[str, Any]:
     return out
 
 
-__all__ = ["Callback", "Callbacks", "Curriculum", "MLflow", "TensorBoard", "Training", "WandB"]
+__all__ = ["Callback", "Callbacks", "Curriculum", "MLflow", "TensorBoard", "Training", "View", "WandB"]

@@ -138,7 +138,8 @@ void Fed::tell() {
 
 Json Fed::command(const Document& asked) {
   const std::string what = text_at(asked, "do", 16);
-  if (!scene_ || frames_.empty()) throw Usage(what + ": the program has shown nothing yet");
+  if (frames_.empty() && what != "play" && what != "speed" && what != "contacts")
+    throw Usage(what + ": the program has shown nothing yet");
   const auto on = [&] { return flag_at(asked, "on"); };
   const auto world = [&] {
     return static_cast<int32_t>(integer_at(asked, "world", 0, static_cast<int64_t>(scene_->worlds) - 1));
@@ -146,7 +147,7 @@ Json Fed::command(const Document& asked) {
   ++changes_;
   if (what == "play") {
     plays_ = on();
-    at_ = plays_ ? last() : at_;
+    if (plays_ && !frames_.empty()) at_ = last();
   } else if (what == "step") {
     plays_ = false;
     at_ = last();

@@ -1,0 +1,309 @@
+"""redman.view: a window follows a pool, changes nothing unless somebody acts, and does what its page asks for. The page is played by
+a client of its WebSocket; the page itself is tested by test_tool_view."""
+import base64
+import json
+import os
+import socket
+import struct
+import tempfile
+import threading
+import time
+import unittest
+import urllib.error
+import urllib.request
+from pathlib import Path
+from urllib.parse import urlsplit
+
+import numpy as np
+
+import redman
+from redman import callbacks
+from test_python_show import VIEWER, Ball
+
+
+class Page:
+    """What a page does, frame by frame."""
+
+    def __init__(self, address):
+        url = urlsplit(address)
+        self.socket = socket.create_connection((url.hostname, url.port), timeout=30)
+        self.file = self.socket.makefile("rb")
+        self.socket.sendall((f"GET {url.path}live HTTP/1.1\r\nHost: {url.netloc}\r\nOrigin: http://{url.netloc}\r\nUpgrade: websocket\r\n"
+                             f"Connection: Upgrade\r\nSec-WebSocket-Version: 13\r\n"
+                             f"Sec-WebSocket-Key: {base64.b64encode(os.urandom(16)).decode()}\r\n\r\n").encode())
+        status = self.file.readline()
+        assert b"101" in status, status
+        while self.file.readline().strip():
+            pass
+        self.asked, self.scene = 0, None
+
+    def tell(self, **what):
+        data, key = json.dumps(what).encode(), os.urandom(4)
+        size = bytes([0x80 | len(data)]) if len(data) < 126 else bytes([0x80 | 126]) + struct.pack(">H", len(data))
+        self.socket.sendall(b"\x81" + size + key + bytes(b ^ key[i % 4] for i, b in enumerate(data)))
+
+    def read(self):
+        """The next message: a dict, of a frame its head with its numbers."""
+        kind, size = self.file.read(2)
+        size &= 127
+        if size >= 126:
+            size = struct.unpack(">H" if size == 126 else ">Q", self.file.read(2 if size == 126 else 8))[0]
+        data = self.file.read(size)
+        if kind & 15 == 1:
+            said = json.loads(data)
+            self.scene = said if said.get("say") == "scene" else self.scene
+            return said
+        length, = struct.unpack_from("<I", data)
+        head = json.loads(data[4:4 + length])
+        head["numbers"] = np.frombuffer(data, np.float32, offset=4 + length)
+        self.tell(do="shown")
+        return head
+
+    def until(self, holds):
+        """The first message of which something holds."""
+        end = time.monotonic() + 30
+        while time.monotonic() < end:
+            said = self.read()
+            if holds(said):
+                return said
+        raise AssertionError("it did not come")
+
+    def ask(self, **what):
+        self.asked += 1
+        self.tell(id=self.asked, **what)
+        return self.until(lambda said: said.get("id") == self.asked)
+
+    def close(self):
+        self.file.close()
+        self.socket.close()
+
+
+def wait(holds):
+    end = time.monotonic() + 30
+    while not holds():
+        assert time.monotonic() < end, "it did not come"
+        time.sleep(0.005)
+
+
+@unittest.skipUnless(VIEWER, "no tool, or no viewer library in it (libjs-three)")
+class OfAPool(unittest.TestCase):
+    def open(self, *given, **named):
+        window = redman.view(*given, browser=False, **named)
+        self.addCleanup(window.close)
+        return window
+
+    def look(self, window):
+        page = Page(window.address)
+        self.addCleanup(page.close)
+        wait(lambda: window.windows == 1)
+        return page
+
+    def test_it_shows_what_is_there_and_changes_nothing(self):
+        pools = [redman.Pool("hand_over_safe_finger", num_envs=3) for _ in range(2)]
+        for pool in pools:
+            pool.reset(seeds=4)
+        pool = pools[0]
+        window = self.open(pool)
+        page = self.look(window)
+        page.tell(do="contacts", on=True)
+        wait(lambda: window._state["contacts"])
+        first = page.until(lambda said: "numbers" in said)
+        self.assertEqual((page.scene["task"], page.scene["worlds"], page.scene["fed"]), ("hand_over_safe_finger", 3, True))
+        self.assertEqual([c["limit"] for c in page.scene["costs"]][:1], [40])
+        moving = page.scene["moving"]
+        for step in range(1, 13):
+            pool.step(pool.baseline("random"))
+            pools[1].step(pools[1].baseline("random"))
+            seen = page.until(lambda said: said.get("at", -1) >= first["at"] + step)
+        self.assertEqual(pool.hash(), pools[1].hash())
+        self.assertEqual(seen["step"], [12] * 3)
+        np.testing.assert_allclose(seen["return"], pool.episode_return, rtol=1e-6)
+        np.testing.assert_allclose(seen["sum"], pool.episode_cost[0], rtol=1e-6)
+        np.testing.assert_allclose(seen["action"], pool.action[0], rtol=1e-6)
+        rows = np.array([pool.poses(i)[moving] for i in range(3)], np.float32).reshape(-1)
+        np.testing.assert_array_equal(seen["numbers"][:rows.size], rows)
+        contacts = pool.contacts(0)
+        self.assertEqual(seen["contacts"], len(contacts))
+        np.testing.assert_array_equal(seen["numbers"][rows.size:].reshape(-1, 6)[:, 3:], contacts["force"])
+
+    def test_a_paused_page_holds_the_loop_and_steps_it(self):
+        pool = redman.Pool("ball_run", options={"max_steps": 1000})
+        pool.reset()
+        window = self.open(pool)
+        page = self.look(window)
+        page.ask(do="play", on=False)
+        wait(lambda: not window._state["plays"])
+        steps, ends = [0], threading.Event()
+
+        def loop():
+            while not ends.is_set():
+                pool.step(pool.baseline("zero"))
+                steps[0] += 1
+
+        thread = threading.Thread(target=loop)
+        thread.start()
+        try:
+            time.sleep(0.3)
+            self.assertEqual(steps[0], 0)
+            for count in (1, 2):
+                page.ask(do="step")
+                wait(lambda count=count: steps[0] == count)
+            time.sleep(0.2)
+            self.assertEqual(steps[0], 2)
+            page.ask(do="play", on=True)
+            begin = time.monotonic()
+            wait(lambda: steps[0] >= 62)
+            self.assertGreater(time.monotonic() - begin, 0.85)  # 60 steps of 1/60 s
+            page.ask(do="speed", times=100)
+            back = page.ask(do="seek", at=1)
+            self.assertNotIn("error", back)
+            seen = page.until(lambda said: said.get("at") == 1)
+            self.assertFalse(seen["plays"])
+            self.assertGreaterEqual(seen["last"], 62)
+            page.close()  # nobody looks: nobody is waited for
+            before = steps[0]
+            wait(lambda: steps[0] > before + 100)
+        finally:
+            ends.set()
+            window.close()
+            thread.join(30)
+        self.assertNotIn("step", vars(pool))
+
+    def test_a_hand_pulls_and_acts(self):
+        pools = [redman.Pool(Ball) for _ in range(2)]
+        for pool in pools:
+            pool.reset(seeds=1)
+        pool, other = pools
+        window = self.open(pool)
+        page = self.look(window)
+        page.until(lambda said: "numbers" in said)
+        index = page.scene["moving"][0]
+        at = pool.poses(0)[index][:3]
+        page.ask(do="grab", world=0, shape=index, local=[0, 0, 0], to=[float(at[0]), float(at[1]) + 1000, float(at[2])], newton=3, reach=0.5)
+        wait(lambda: window._state["push"] is not None)
+        np.testing.assert_allclose(window._state["push"], [0, index, 0, 3, 0], atol=1e-4)
+        for _ in range(8):
+            pool.step(np.zeros((1, 1)))
+            other.push(0, index, [0, 3, 0])
+            other.step(np.zeros((1, 1)))
+        self.assertGreater(pool.poses(0)[index][1] - at[1], 0.01)
+        np.testing.assert_allclose(pool.poses(0)[index], other.poses(0)[index], atol=1e-3)
+        page.ask(do="release")
+        page.ask(do="action", entry=0, value=-0.5)
+        wait(lambda: window._state["action"] is not None)
+        pool.step(np.ones((1, 1)))
+        self.assertEqual(pool.action[0, 0], -0.5)
+        page.ask(do="hand", on=False)
+        wait(lambda: window._state["action"] is None)
+        pool.step(np.ones((1, 1)))
+        self.assertEqual(pool.action[0, 0], 1)
+        for wrong, words in (({"do": "reset"}, "another program"), ({"do": "record", "on": True}, "another program"),
+                             ({"do": "grab", "world": 0, "shape": 10**6}, "shape"), ({"do": "watch", "world": 5}, "world"),
+                             ({"do": "action", "entry": 9, "value": 0}, "entry")):
+            self.assertIn(words, page.ask(**wrong)["error"])
+
+    def test_a_task_that_cannot_be_pulled_says_so_once(self):
+        pool = redman.Pool("ball_run")
+        pool.reset()
+        page = self.look(self.open(pool))
+        page.until(lambda said: "numbers" in said)
+        page.ask(do="grab", world=0, shape=page.scene["moving"][0], local=[0, 0, 0], to=[1, 1, 1], newton=3, reach=0.5)
+        with self.assertWarnsRegex(RuntimeWarning, "push is not possible"):
+            for _ in range(30):
+                pool.step(pool.baseline("zero"))
+
+    def test_others_get_nothing(self):
+        pool = redman.Pool("bandit")
+        window = self.open(pool)
+        root = window.address.rsplit("/", 2)[0] + "/"
+        for address in (root, root + "0" * 32 + "/"):
+            with self.assertRaises(urllib.error.HTTPError) as refused:
+                urllib.request.urlopen(address)
+            self.assertEqual((refused.exception.code, refused.exception.read()), (403, b""))
+            refused.exception.close()
+        with urllib.request.urlopen(window.address) as page:
+            self.assertIn(b"redman", page.read())
+
+    def test_it_ends_with_its_close(self):
+        pool = redman.Pool("ball_run")
+        pool.reset()
+        with redman.view(pool, browser=False) as window:
+            process = window._process
+        self.assertTrue(window.closed)
+        self.assertIsNotNone(process.returncode)
+        self.assertNotIn("step", vars(pool))
+        pool.step(pool.baseline("zero"))
+        with redman.view(pool, browser=False) as window:
+            window._process.kill()
+            window._process.wait()
+            pool.step()
+            pool.step()
+            self.assertTrue(window.closed)
+
+    def test_what_is_refused(self):
+        pool = redman.Pool("bandit", num_envs=3)
+        for named, words in (({"num_envs": 4}, "worlds 0 to 3 of 3"), ({"env": 3}, "of 3"), ({"policy": "trained"}, "of the pool")):
+            with self.assertRaisesRegex(redman.Error, words):
+                redman.view(pool, **named)
+        with self.assertRaisesRegex(redman.Error, "bal_run"):
+            redman.view("bal_run", browser=False)
+        with self.assertRaisesRegex(redman.Error, "2000|envs"):
+            redman.view("ball_run", num_envs=2000, browser=False)
+
+
+@unittest.skipUnless(VIEWER, "no tool, or no viewer library in it (libjs-three)")
+class OfOthers(unittest.TestCase):
+    def first_scene(self, window):
+        page = Page(window.address)
+        try:
+            page.until(lambda said: "numbers" in said)
+            return page.scene
+        finally:
+            page.close()
+
+    def test_policies_runs_and_tasks_are_shown_by_the_tool(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder, "r")
+            run = redman.train("ball_run", steps=1000, envs=4, horizon=32, max_steps=40, out=path, progress=False)
+            loose = redman.train("ball_run", steps=1000, envs=4, horizon=32, max_steps=40, progress=False)
+            for shown, named, actor in ((run, {}, str(path)), (path, {}, str(path)), (run.policy, {}, str(path)), (loose, {}, "policy.rdm"),
+                                        ("ball_run", {}, "hold"), (redman.task("ball_run"), {"policy": "trained"}, "trained"),
+                                        (redman.Policy.trained("ball_run"), {"num_envs": 2}, "trained")):
+                with redman.view(shown, browser=False, paused=True, **named) as window:
+                    scene = self.first_scene(window)
+                    self.assertNotIn("fed", scene)
+                    self.assertTrue(any(name.endswith(actor) for name in scene["actors"]), scene["actors"])
+                    self.assertEqual(scene["worlds"], named.get("num_envs", 1))
+                    if isinstance(shown, (redman.Run, redman.Policy)) and shown is not redman.Policy and "num_envs" not in named:
+                        self.assertEqual(scene["steps"], 40)
+
+    def test_a_task_in_python_is_shown_by_this_process(self):
+        with redman.view(Ball, browser=False) as window:
+            self.assertEqual((self.first_scene(window)["task"], window.closed), ("show_ball", False))
+        run = redman.train(Ball, steps=500, envs=4, horizon=16, progress=False)
+        with redman.view(run, browser=False, num_envs=2) as window:
+            page = Page(window.address)
+            seen = page.until(lambda said: "numbers" in said and said["last"] > 30)  # episodes of 12 steps, one after the other
+            self.assertEqual((page.scene["worlds"], page.scene["actors"], len(seen["step"])), (2, ["ppo_lag"], 2))
+            page.close()
+
+    def test_a_training_is_shown_while_it_runs(self):
+        view, seen = callbacks.View(browser=False), []
+
+        def look(epoch, training):
+            page = Page(view.window.address)
+            seen.append(page.until(lambda said: "numbers" in said and said["last"] > 3))
+            page.close()
+            return epoch.epoch >= 2
+
+        plain = redman.train("ball_run", steps=2000, envs=4, horizon=32, progress=False)
+        run = redman.train("ball_run", steps=2000, envs=4, horizon=32, progress=False, callback=[view, look])
+        self.assertGreaterEqual(len(seen), 2)
+        self.assertTrue(view.window.closed)
+        for name in ("Metrics/EpRet", "Loss/Loss_pi"):
+            rows = min(len(run.curve.steps), len(plain.curve.steps))
+            np.testing.assert_array_equal(run.curve[name][:rows], plain.curve[name][:rows])  # who looks changes nothing
+
+
+if __name__ == "__main__":
+    unittest.main()
