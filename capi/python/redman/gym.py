@@ -307,6 +307,8 @@ class VectorEnv(_Named, _VectorEnv):
     def _told_but(self, began: Array) -> dict[str, Array]:
         """The rows of infos, with those of a reset for worlds that have begun a new episode."""
         told = self._told()
+        if not began.any():
+            return told
         for key, values in told.items():
             if self.mode == "SameStep" or key not in self._flags():  # else those rows are the reset's own
                 values[began] = "" if values.dtype == object else 0
@@ -333,13 +335,14 @@ class VectorEnv(_Named, _VectorEnv):
     def _rows(self, told: dict[str, Array], here: Array) -> Info:
         """The rows with a mask of the worlds that have one; 0 or None elsewhere."""
         rows: Info = {}
+        everywhere, told_of = bool(here.all()), here.copy()
         for key, values in told.items():
             if (self._old and values.ndim > 1) or values.dtype == object:
                 rows[key] = _objects(here, lambda i, values=values: values[i])
             else:
-                mask = here.reshape(-1, *[1] * (values.ndim - 1))
-                rows[key] = values if here.all() else np.where(mask, values, values.dtype.type(0))
-            rows["_" + key] = here.copy()
+                rows[key] = values if everywhere else np.where(here.reshape(-1, *[1] * (values.ndim - 1)), values,
+                                                               values.dtype.type(0))
+            rows["_" + key] = told_of
         return rows
 
     def step_async(self, actions: Any) -> None:

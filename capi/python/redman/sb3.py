@@ -111,7 +111,7 @@ class VecEnv(_VecEnv):
         self._length += 1
         self._costs += costs
         self._success |= w.success
-        for i in np.flatnonzero(ended):
+        for i in np.flatnonzero(ended).tolist() if ended.any() else []:
             infos[i]["terminal_observation"] = w.final_obs[i].copy()
             infos[i].update(self._finished(i))
             no = np.zeros(1, bool)
@@ -122,11 +122,14 @@ class VecEnv(_VecEnv):
     def _infos(costs: Array, success: Array, status: Array, all_status: Array, cut: Array,
                shielded: Mapping[str, Array]) -> list[dict[str, Any]]:
         """The info of a step for each world."""
-        more = {key: list(rows) if rows.ndim > 1 else rows.tolist() for key, rows in shielded.items()}
-        return [{"cost": cost, "costs": row, "success": won, "status": int(bits), "episode_status": int(all_bits),
-                 "TimeLimit.truncated": late, **{key: values[i] for key, values in more.items()}}
-                for i, (cost, row, won, bits, all_bits, late) in enumerate(zip(
-                    costs[:, 0].tolist(), costs, success.tolist(), status.tolist(), all_status.tolist(), cut.tolist()))]
+        infos = [{"cost": cost, "costs": row, "success": won, "status": bits, "episode_status": all_bits, "TimeLimit.truncated": late}
+                 for cost, row, won, bits, all_bits, late in zip(
+                     costs[:, 0].tolist(), costs, success.tolist(), status.astype(np.int64).tolist(),
+                     all_status.astype(np.int64).tolist(), cut.tolist())]
+        for key, rows in shielded.items():
+            for info, value in zip(infos, list(rows) if rows.ndim > 1 else rows.tolist()):
+                info[key] = value
+        return infos
 
     @staticmethod
     def _nothing(shielded: Mapping[str, Array]) -> dict[str, Array]:
