@@ -16,7 +16,7 @@ _UNPACK = """<!doctype html><meta charset="utf-8"><title>{title}</title><body st
   document.open(); document.write(text); document.close();
 }})();
 </script>"""
-_HEIGHT = 640  # of a player, pixels
+_HEIGHT = 760  # of a player, pixels
 
 
 def player(page: str, title: str) -> str:

@@ -391,7 +391,7 @@ def _folded(key: str) -> str:
                    "num_episodes": "episodes", "n_episodes": "episodes", "n_eval_episodes": "episodes", "policy": "player",
                    "model": "player", "env_id": "task", "env": "task"},
           hints={"deterministic": "the mean action plays; a sampling one is redman.evaluate(policy.actor(pool, stochastic=True))",
-                 "render": "the command `redman render` makes pictures and pages of an episode"}, options=True)
+                 "render": "policy.render(\"throw.html\"), or .png, .mp4, .gif"}, options=True)
 def evaluate(player: Player, task: Optional[TaskName] = None, episodes: int = 100, num_envs: int = 16, seed: int = 0,
              threads: Optional[int] = None, options: Optional[Options] = None, cost_limits: CostLimits = None,
              magnitudes: Optional[bool] = None, *, action_repeat: Union[None, int, str] = None, center: Center = None,
