@@ -206,12 +206,16 @@ const char* rdm_agent_error(const rdm_agent* a) {
 
 namespace {
 
+void need_mode(int32_t mode) {
+  if (mode != RDM_ACT_SAMPLE && mode != RDM_ACT_MEAN)
+    fail(Code::kRange, "mode: %d is not RDM_ACT_SAMPLE or RDM_ACT_MEAN", mode);
+}
+
 // Whether actions are sampled.
 bool read_act(const float* obs, int32_t mode, const float* action) {
   need(obs, "obs");
   need(action, "action");
-  if (mode != RDM_ACT_SAMPLE && mode != RDM_ACT_MEAN)
-    fail(Code::kRange, "mode: %d is not RDM_ACT_SAMPLE or RDM_ACT_MEAN", mode);
+  need_mode(mode);
   return mode == RDM_ACT_SAMPLE;
 }
 
@@ -231,6 +235,15 @@ rdm_result rdm_agent_act_points(rdm_agent* a, const float* obs, const rdm_points
     if (!a->agent->eyes().points)
       fail(Code::kState, "points: the agent has no encoder, so it cannot read them");
     a->agent->act(obs, sample, action, read_points(points, a->agent->eyes()));
+  });
+}
+
+rdm_result rdm_agent_forget(rdm_agent* a, int32_t mode, const uint8_t* mask) {
+  return call_on(a, [&] {
+    need_mode(mode);
+    for (int32_t i = 0; mask && i < a->agent->config().num_envs; ++i)
+      if (mask[i] > 1) fail(Code::kArgument, "mask: row %d is %d, neither 0 nor 1", i, int32_t{mask[i]});
+    a->agent->forget(mode == RDM_ACT_MEAN, mask);
   });
 }
 

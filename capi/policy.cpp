@@ -67,6 +67,7 @@ struct PolicyTensor {
   bool weights = false;
   const int16_t* millimetres = nullptr;    // in the place of data: points of the example
   const unsigned char* numbers = nullptr;  // in the place of data: their classes, colours
+  bool history = false;                    // in the place of data: the entries of a row that a history keeps
 };
 
 // A layer of all groups as one layer of one network, whose other weights are 0: so whoever reads tensors needs no
@@ -106,7 +107,11 @@ void copy_tensor(const PolicyView& v, const PolicyTensor& t, float* out) {
   for (size_t i = 0; t.millimetres && i < size; ++i)
     out[i] = static_cast<float>(static_cast<double>(v.eyes.origin[i % 3]) + 0.001 * t.millimetres[i]);
   for (size_t i = 0; t.numbers && i < size; ++i) out[i] = t.numbers[i];
-  if (t.millimetres || t.numbers) return;
+  for (size_t i = 0; t.history && i < size; ++i) {
+    const size_t entry = v.history_entries ? static_cast<size_t>(v.history_entries[i]) : i;
+    out[i] = static_cast<float>(v.columns ? v.columns[entry] : static_cast<int32_t>(entry));
+  }
+  if (t.millimetres || t.numbers || t.history) return;
   if (t.layer >= 0) return copy_groups(v, t, out);
   if (!t.part) {
     std::copy(t.data, t.data + size, out);
@@ -158,6 +163,25 @@ bool eyes_tensor_at(const PolicyView& v, int32_t i, PolicyTensor* out) {
   return true;
 }
 
+// The tensors of a policy with a memory.
+bool memory_tensor_at(const PolicyView& v, int32_t i, PolicyTensor* out) {
+  const GruShape& g = v.gru;
+  if (v.history > 1) {
+    if (i > 0) return false;
+    *out = {"history.columns", nullptr, v.history_width, 1};
+    out->history = true;
+    return true;
+  }
+  const float* const at = v.params + v.net().gru_offset();
+  const PolicyTensor all[] = {{"memory.input.weight", at, 3 * g.units, g.in},
+                              {"memory.input.bias", at + g.input_bias_offset(), 3 * g.units, 1},
+                              {"memory.state.weight", at + g.state_offset(), 3 * g.units, g.units},
+                              {"memory.state.bias", at + g.state_bias_offset(), 3 * g.units, 1}};
+  if (g.units == 0 || i >= static_cast<int32_t>(std::size(all))) return false;
+  *out = all[i];
+  return true;
+}
+
 // The i-th block of numbers of a policy file; false past the end.
 bool tensor_at(const PolicyView& v, int32_t i, PolicyTensor* out) {
   static constexpr const char* kWeights[] = {"actor.0.weight", "actor.1.weight", "actor.2.weight",
@@ -178,11 +202,18 @@ bool tensor_at(const PolicyView& v, int32_t i, PolicyTensor* out) {
       out->layer = l, out->weights = i % 2 == 0;
       return true;
     }
-    if (i % 2)
+    if (v.gru.units && l == s.num_hidden) {
+      const MlpShape head = v.net().head();
+      const float* const at = v.params + v.net().head_offset();
+      if (i % 2)
+        *out = {kBiases[l], at + head.bias_offset(0), head.out, 1};
+      else
+        *out = {kWeights[l], at, head.out, head.in};
+    } else if (i % 2)
       *out = {kBiases[l], v.params + s.bias_offset(l), s.layer_out(l), 1};
     else
       *out = {kWeights[l], v.params + s.weight_offset(l), s.layer_out(l),
-              part ? v.obs_dim() + v.eyes.features() : s.layer_in(l), part};
+              part ? v.obs_dim() + v.eyes.features() + v.history_inputs() : s.layer_in(l), part};
     return true;
   }
   const PolicyTensor std_bounds = {"actor.log_std_bounds", v.std_bounds, 2, 1};
@@ -201,7 +232,8 @@ bool tensor_at(const PolicyView& v, int32_t i, PolicyTensor* out) {
   else if (rest < known)
     *out = normalizer[rest - std::size(always)];
   else
-    return eyes_tensor_at(v, static_cast<int32_t>(rest - known), out);
+    return v.state_dim() ? memory_tensor_at(v, static_cast<int32_t>(rest - known), out)
+                         : eyes_tensor_at(v, static_cast<int32_t>(rest - known), out);
   return true;
 }
 
@@ -280,6 +312,7 @@ rdm_result rdm_policy_get_info(const rdm_policy* p, rdm_policy_info* io) {
     info.num_fields = v.num_fields;
     info.novelty = v.usual.rms > 0;
     info.generation = v.generation;
+    info.state_dim = v.state_dim();
     write_struct(io, info, offsetof(rdm_policy_info, activation), "io");
   });
 }
@@ -295,6 +328,11 @@ void need_rows(int32_t rows) {
 // Acts with a policy that does not read points.
 void need_blind(const Policy& policy) {
   if (policy.view().eyes.points) fail(Code::kState, "policy: it reads points; call rdm_policy_act_points");
+}
+
+void need_no_state(const Policy& policy, const char* call) {
+  if (policy.view().state_dim())
+    fail(Code::kState, "policy: it has a memory, so %s cannot run it; call rdm_policy_act_state", call);
 }
 
 // run(scratch) writes the rows that are not NULL, action and mean, which are looked at then.
@@ -321,9 +359,27 @@ rdm_result rdm_policy_act(const rdm_policy* p, const float* obs, int32_t rows, c
     need(obs, "obs");
     need_rows(rows);
     need_blind(*p->policy);
+    need_no_state(*p->policy, "rdm_policy_act");
     need(action, "action");
     act(p, obs, rows, noise, action, nullptr, scratch, scratch_bytes,
         [&](void* memory) { p->policy->act(obs, rows, noise, action, memory); });
+  });
+}
+
+rdm_result rdm_policy_act_state(const rdm_policy* p, const float* obs, float* state, int32_t rows,
+                                const float* noise, float* action, void* scratch, size_t scratch_bytes) {
+  return call([&] {
+    need_handle(p);
+    need(obs, "obs");
+    need_rows(rows);
+    need_blind(*p->policy);
+    need(action, "action");
+    const int32_t dim = p->policy->view().state_dim();
+    if (dim) need(state, "state");
+    act(p, obs, rows, noise, action, nullptr, scratch, scratch_bytes, [&](void* memory) {
+      if (dim) need_finite(state, rows, dim, "state");
+      p->policy->act(obs, rows, noise, action, memory, {}, state);
+    });
   });
 }
 
@@ -334,6 +390,7 @@ rdm_result rdm_policy_sample(const rdm_policy* p, const float* obs, int32_t rows
     need(obs, "obs");
     need_rows(rows);
     need_blind(*p->policy);
+    need_no_state(*p->policy, "rdm_policy_sample");
     if (!action && !mean)
       fail(Code::kArgument, "action and mean are both NULL, so there is nothing to write");
     act(p, obs, rows, noise, action, mean, scratch, scratch_bytes,

@@ -247,6 +247,7 @@ rdm_result rdm_agent_set_shield(rdm_agent* a, rdm_shield* shield) {
     if (shield) need_handle(shield);
     if (a->agent->missing() != a->agent->horizon())
       fail(Code::kState, "set_shield: a horizon has begun; set the shield between epochs");
+    if (shield) a->agent->need_no_memory("set_shield");
     a->shield = shield;
   });
 }

@@ -47,6 +47,7 @@ constexpr const TaskInfo* kTasks[] = {
     &kAntGather,
     &kAntReach,
     &kMatrixGame,
+    &kRecall,
 };
 
 }  // namespace

@@ -46,6 +46,7 @@ extern const TaskInfo kAntRun;
 extern const TaskInfo kAntCircle;
 extern const TaskInfo kAntGather;
 extern const TaskInfo kAntReach;
+extern const TaskInfo kRecall;
 
 // Puts them into the registry. Once per process, from any thread; further calls do nothing.
 void register_builtin_tasks();

@@ -35,7 +35,9 @@ size_t Agent::memory(const AgentConfig& config) {
   ResolvedAgentConfig resolved = resolve_config(config);
   const AlgoRow& row = *resolved.row;
   size_t held = resolved.options.held_bytes() +
-                (resolved.actor_columns.capacity() + resolved.critic_columns.capacity()) * sizeof(int32_t) +
+                (resolved.actor_columns.capacity() + resolved.critic_columns.capacity() +
+                 resolved.history_columns.capacity()) *
+                    sizeof(int32_t) +
                 resolved.groups.capacity() * sizeof(ActorGroup) +
                 resolved.group_specs.capacity() * sizeof(GroupSpec);
   for (const GroupSpec& g : resolved.group_specs) held += g.columns.capacity() * sizeof(int32_t);
@@ -66,7 +68,10 @@ void Agent::carve(Arena& arena) {
   collector_.carve(arena, resolved_);
   learner_.carve(arena, resolved_, nets_.size);
   seen_statistics_ =
-      arena.make<float>(resolved_.actor_columns.empty() ? 0 : 2 * static_cast<size_t>(nets_.actor_entries()));
+      arena.make<float>(resolved_.actor_columns.empty() ? 0 : 2 * static_cast<size_t>(nets_.row_entries()));
+  history_entries_ = nullptr;
+  if (!resolved_.history_columns.empty())
+    history_entries_ = arena.make<int32_t>(resolved_.history_columns.size());
   fields_ = keep_fields(arena, resolved_.config.fields, resolved_.config.num_fields);
   shuffle_ = arena.make<Stream>(static_cast<size_t>(resolved_.blocks));
   spread_ = arena.make<double>(resolved_.state_std() ? 2 * static_cast<size_t>(resolved_.blocks) : 0);
@@ -90,6 +95,7 @@ void Agent::open(const AgentConfig& config) {
   for (int32_t b = 0; b < resolved_.blocks; ++b)
     shuffle_[b] =
         Stream(config.seed, static_cast<uint32_t>(workers_.ranks().first_block() + b), Purpose::kMinibatch);
+  find_history_entries();
   init_networks(nets_, resolved_);
   restart_average(nets_);
   opened();
@@ -103,6 +109,16 @@ void Agent::open(const AgentConfig& config) {
   c.initial_mean = nullptr;
   c.cost_limits = nullptr;
   c.fields = nullptr;
+}
+
+// Where the columns of a history stand among those that the actor observes.
+void Agent::find_history_entries() {
+  const int32_t* columns = nets_.columns[Networks::kActor];
+  const Vector<int32_t>& kept = resolved_.history_columns;
+  for (size_t i = 0; i < kept.size(); ++i) {
+    const int32_t* at = columns ? std::lower_bound(columns, columns + nets_.row_entries(), kept[i]) : nullptr;
+    history_entries_[i] = columns ? static_cast<int32_t>(at - columns) : kept[i];
+  }
 }
 
 void Agent::read_live() {
@@ -138,6 +154,17 @@ void Agent::act(const float* obs, bool sample, float* action, const PointRows& c
   collector_.act(obs, sample, action, clouds);
 }
 
+void Agent::forget(bool by_mean, const uint8_t* mask) {
+  need_no_update("forget");
+  collector_.forget(by_mean, mask);
+}
+
+void Agent::need_no_memory(const char* call) const {
+  if (remembers())
+    fail(Code::kUnsupported, "%s: the agent has a memory (option %s), which this call does not support yet",
+         call, resolved_.gru.units ? "memory" : "history");
+}
+
 void Agent::begin_decision(const char* call) {
   need_no_update(call);
   if (collector_.idle()) check_cancel(), sampler_ = 0;
@@ -161,6 +188,7 @@ void Agent::need_generation(const char* call, const Transition& t) {
 void Agent::values(const float* obs, int32_t rows, float* value, float* cost) const {
   const SharedOptions& o = resolved_.shared;
   need_no_update("values");
+  if (resolved_.history > 1) need_no_memory("values");
   if (o.normalize_reward || o.normalize_cost)
     fail(Code::kUnsupported, "agent: with option %s the values of its critics have no fixed unit",
          o.normalize_reward ? "normalize_reward" : "normalize_cost");
@@ -209,6 +237,7 @@ CloneReport Agent::clone(const DemoRows& demo, const CloneOptions& how) {
   const FpMode mode;
   const HostScope scope(resolved_.config.hooks);
   need_idle("clone");
+  need_no_memory("clone");
   need_clouds(demo);
   check_cancel();
   const CloneReport report =
@@ -240,6 +269,7 @@ PretrainReport Agent::pretrain(const PointRows& clouds, const uint8_t* label, in
 
 void Agent::set_recording(const DemoRows& demo, uint64_t mark) {
   need_idle("set_recording");
+  if (demo.rows > 0) need_no_memory("set_recording");
   need_clouds(demo);
   imitation_.set(demo, mark, resolved_.config.hooks);
 }
@@ -264,10 +294,17 @@ void Agent::need_same_shape(const PolicyView& p) const {
   if (!same_network(theirs, eyes)) differ("encoder");
   if (!std::equal(eyes.origin, eyes.origin + 3, theirs.origin) || eyes.range != theirs.range)
     differ("encoder_origin, or encoder_range,");
-  const int32_t entries = nets_.actor_entries();
   if (p.num_groups != nets_.num_groups) differ("the number of groups");
   for (int32_t i = 0; i < p.num_groups; ++i)
     if (!same_group(p.group[i], nets_.group[i])) differ("groups");
+  if (p.gru.units != nets_.gru.units) differ("memory");
+  const int32_t history = resolved_.history_width;
+  const auto listed = [](const int32_t* entry, int32_t i) { return entry ? entry[i] : i; };
+  if (p.history != resolved_.history) differ("history");
+  if (p.history_width != history) differ("history_fields");
+  for (int32_t i = 0; i < history; ++i)
+    if (listed(p.history_entries, i) != listed(history_entries_, i)) differ("history_fields");
+  const int32_t entries = nets_.row_entries();
   if (p.actor.in != actor.in || (p.columns != nullptr) != (columns != nullptr) ||
       (columns && !std::equal(columns, columns + entries, p.columns)))
     differ("actor_obs");
@@ -282,7 +319,7 @@ void Agent::load_policy(const PolicyView& p, double samples) {
   need_same_shape(p);
   const int32_t* columns = nets_.columns[Networks::kActor];
   const PointNetShape& eyes = nets_.eyes;
-  const int32_t entries = nets_.actor_entries();
+  const int32_t entries = nets_.row_entries();
   Normalizer& n = collector_.normalizer();
   std::copy_n(p.params, p.num_params(), nets_.net(Networks::kActor));
   if (eyes.points) std::copy_n(p.eyes_params, eyes.num_params(), nets_.eyes_net());
@@ -375,8 +412,12 @@ PolicyView Agent::policy_view() {
   const Normalizer& n = collector_.normalizer();
   PolicyView v;
   v.actor = nets_.shape[Networks::kActor];
+  v.gru = nets_.gru;
+  v.history = resolved_.history;
+  v.history_width = resolved_.history_width;
+  v.history_entries = history_entries_;
   v.columns = nets_.columns[Networks::kActor];
-  v.row_dim = nets_.obs_dim;
+  v.row_dim = resolved_.config.obs_dim;
   v.group = nets_.group, v.num_groups = nets_.num_groups;
   v.params = nets_.kept_actor();
   v.eyes = nets_.eyes;

@@ -63,6 +63,11 @@ class Agent {
   void act(const float* obs, bool sample, float* action, const PointRows& clouds = {});
   const PointNetShape& eyes() const { return resolved_.eyes; }
   void record(const Transition& t);
+  // What it remembers of environments, as Collector::forget.
+  void forget(bool by_mean, const uint8_t* mask);
+  bool remembers() const { return resolved_.remembers(); }
+  // Error(kUnsupported) for an agent with a memory.
+  void need_no_memory(const char* call) const;
   // A decision that the policy of this generation took elsewhere, in the place of act and record. As act draws
   // nothing for it, the streams of noise stay where they are; all else is as if it had acted.
   void put(const float* obs, const float* action, const Transition& t);
@@ -235,6 +240,7 @@ class Agent {
   // Error(kState) for what another policy sampled.
   void need_generation(const char* call, const Transition& t);
   void need_clouds(const DemoRows& demo) const;
+  void find_history_entries();
   // action_std and entropy: of the policy now, or with std_mode=state as it was on the epoch's data.
   bool spread_on();
   void add_spread(const float* log_std, double share, double count, double* out) const;
@@ -266,6 +272,7 @@ class Agent {
   Imitation imitation_;
   char (*names_)[kTensorNameSize] = nullptr;  // of the tensors
   const ObsField* fields_ = nullptr;          // [num_fields] for policy files
+  int32_t* history_entries_ = nullptr;        // [history_width] of those that the actor sees; null: the first
   float* seen_statistics_ = nullptr;          // [2][actor_entries], where the actor sees a part of a row
 };
 

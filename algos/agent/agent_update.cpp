@@ -14,6 +14,7 @@
 
 #include "algos/agent/agent.hpp"
 #include "algos/core/option_tables.hpp"
+#include "algos/rollout/sequences.hpp"
 #include "base/elementary.hpp"
 #include "base/error.hpp"
 #include "base/fpmode.hpp"
@@ -159,8 +160,14 @@ void Agent::judge_epoch() {
 
 void Agent::begin_pass() {
   const Batch& whole = whole_batch();
-  for (int32_t b = 0; b < whole.blocks; ++b)
-    shuffle(shuffle_[b], rollout().order + whole.segment(b).first, whole.segment(b).rows);
+  const int32_t envs = workers_.ranks().block_envs();
+  for (int32_t b = 0; b < whole.blocks; ++b) {
+    const Segment rows = whole.segment(b);
+    if (rollout().path)
+      list_sequences(rollout(), b * envs, envs, rows.first, &shuffle_[b]);
+    else
+      shuffle(shuffle_[b], rollout().order + rows.first, rows.rows);
+  }
   run_.minibatch = 0;
   run_.last = BatchSums();
   phase_ = Phase::kMinibatch;

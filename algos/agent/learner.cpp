@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "algos/imitation/imitation.hpp"
+#include "algos/rollout/sequences.hpp"
 #include "base/elementary.hpp"
 #include "nn/dot.hpp"
 
@@ -94,11 +95,16 @@ void Learner::chunk_gradient(Workspace& workspace, const Chunk& chunk, int32_t f
   const int32_t n = chunk.rows;
   if (first == first_net_) workspace.sums = BatchSums();
   if (n == 0) return std::fill(grad + begin_, grad + end_, 0.0f);
-  gather_obs(*rollout_, chunk.order, 1, n, workspace.obs);
+  bool gathered = false;
   for (int32_t net = first; net < last; ++net) {
-    if (net == Networks::kActor)
+    if (net == Networks::kActor) {
       policy_gradient(workspace, *policy_, chunk.order, n, grad);
-    else if (net == Networks::kReward)
+      gathered = nets_->gru.units == 0;
+      continue;
+    }
+    if (!gathered) gather_obs(*rollout_, chunk.order, 1, n, workspace.obs);
+    gathered = true;
+    if (net == Networks::kReward)
       workspace.sums.reward_loss = critic_gradient(workspace, Networks::kReward, chunk.order, n, grad);
     else
       workspace.sums.cost_loss = critic_gradient(workspace, Networks::kCost, chunk.order, n, grad);
@@ -113,11 +119,34 @@ void Learner::end_gradient() {
   add_penalties();
 }
 
+MemorySteps Learner::forward_policy(Workspace& workspace, const int32_t* order, int32_t rows) const {
+  MemorySteps memory;
+  if (nets_->gru.units) {
+    memory = gather_sequences(*rollout_, order, rows, workspace);
+    nets_->forward_memory(workspace.obs, memory, workspace.actor, workspace.sequences.out);
+    take_outputs(workspace.sequences, rows, static_cast<size_t>(nets_->shape[Networks::kActor].out),
+                 workspace.out);
+  } else {
+    gather_obs(*rollout_, order, 1, rows, workspace.obs);
+    nets_->forward_actor(workspace.obs, rollout_->clouds(order), rows, workspace.actor, workspace.out);
+  }
+  return memory;
+}
+
+void Learner::backward_policy(Workspace& workspace, const MemorySteps& memory, const int32_t* order,
+                              int32_t rows, float* grad) const {
+  if (!nets_->gru.units)
+    return nets_->backward_actor(workspace.obs, rollout_->clouds(order), rows, workspace.actor,
+                                 workspace.dout, grad);
+  give_gradients(workspace.sequences, rows, static_cast<size_t>(nets_->shape[Networks::kActor].out),
+                 workspace.dout);
+  nets_->backward_memory(workspace.obs, memory, workspace.actor, workspace.sequences.dout, grad);
+}
+
 void Learner::policy_gradient(Workspace& workspace, const PolicyLoss& policy, const int32_t* order,
                               int32_t rows, float* grad) const {
-  const PointRows clouds = rollout_->clouds(order);
   expect_actions(*rollout_, order, rows);
-  nets_->forward_actor(workspace.obs, clouds, rows, workspace.actor, workspace.out);
+  const MemorySteps memory = forward_policy(workspace, order, rows);
   std::memset(grad, 0, nets_->std_size * sizeof(float));
   const PolicyChunk chunk = chunk_of(workspace, order, rows, grad);
   const size_t dim = rollout_->action_dim;
@@ -127,7 +156,7 @@ void Learner::policy_gradient(Workspace& workspace, const PolicyLoss& policy, co
                 policy.explores() ? -scale_ * static_cast<float>(shared().entropy) : 0.0f);
   policy.add(chunk);
   if (state) nets_->gate_std(workspace.out, rows, workspace.dout);
-  nets_->backward_actor(workspace.obs, clouds, rows, workspace.actor, workspace.dout, grad);
+  backward_policy(workspace, memory, order, rows, grad);
 }
 
 // Squared error against the targets, or with value_clip the larger one of it and of that of a value held near
@@ -241,9 +270,8 @@ void Learner::step_groups(double rate, double bound) {
 void Learner::measure_rows(Workspace& workspace, const int32_t* order, int32_t rows) const {
   const Rollout& r = *rollout_;
   const auto costs = static_cast<size_t>(r.num_costs);
-  gather_obs(r, order, 1, rows, workspace.obs);
   expect_actions(r, order, rows);
-  nets_->forward_actor(workspace.obs, r.clouds(order), rows, workspace.actor, workspace.out);
+  forward_policy(workspace, order, rows);
   workspace.surrogate = Surrogate();
   const PolicyChunk chunk = chunk_of(workspace, order, rows, nullptr);
   for (size_t i = 0; i < static_cast<size_t>(rows); ++i) {

@@ -107,6 +107,11 @@ class Learner {
   void refresh_log_std();
   // The policy at the outputs that a workspace holds; its derivatives go to the workspace's and to grad.
   PolicyChunk chunk_of(Workspace& workspace, const int32_t* order, int32_t rows, float* grad) const;
+  // What the policy as it is now gives for listed rows, to the workspace's out; and from its dout back to grad. With a
+  // GRU through their sequences. The workspace's obs have the rows, stacked, without one.
+  MemorySteps forward_policy(Workspace& workspace, const int32_t* order, int32_t rows) const;
+  void backward_policy(Workspace& workspace, const MemorySteps& memory, const int32_t* order, int32_t rows,
+                       float* grad) const;
   void policy_gradient(Workspace& workspace, const PolicyLoss& policy, const int32_t* order, int32_t rows,
                        float* grad) const;
   double critic_gradient(Workspace& workspace, Networks::Index net, const int32_t* order, int32_t rows,

@@ -13,18 +13,55 @@ bool covers(const MlpShape& wide, const MlpShape& narrow) {
   return true;
 }
 
+// Of a chunk: whole ones, and two that it cuts.
+int32_t most_sequences(const ResolvedAgentConfig& resolved) {
+  return resolved.gru.units ? resolved.chunk_rows / resolved.memory_chunk() + 2 : 0;
+}
+
+SequenceSpace carve_sequences(Arena& arena, const ResolvedAgentConfig& resolved) {
+  SequenceSpace s;
+  s.most = most_sequences(resolved);
+  const auto n = static_cast<size_t>(s.most), steps = n * static_cast<size_t>(resolved.memory_chunk());
+  for (int32_t** list : {&s.env, &s.begin, &s.last}) *list = arena.make<int32_t>(n);
+  s.place = arena.make<int32_t>(n ? static_cast<size_t>(resolved.chunk_rows) : 0);
+  s.clear = arena.make<uint8_t>(steps);
+  s.h0 = arena.make<float>(n * static_cast<size_t>(resolved.gru.units));
+  s.out = arena.make<float>(steps * static_cast<size_t>(resolved.actor.out));
+  s.dout = arena.make<float>(steps * static_cast<size_t>(resolved.actor.out));
+  return s;
+}
+
+// How many of the next rows of a list of `left` ones, at most `limit`, make a chunk of whole sequences, or of a part
+// of one that is too long.
+int32_t whole_sequences(const Batch& batch, const int32_t* order, int32_t left, int32_t limit, int32_t most) {
+  const auto sequence = [&](int32_t i) {
+    return order[i] / batch.envs / batch.path * batch.envs + order[i] % batch.envs;
+  };
+  int32_t boundary = 0, count = 1;
+  for (int32_t i = 1; i < left; ++i) {
+    const bool next = sequence(i) != sequence(i - 1);
+    if (next && (i == limit || count == most)) return i;
+    if (i == limit) return boundary > 0 ? boundary : limit;
+    if (next) boundary = i, ++count;
+  }
+  return left;
+}
+
 Workspace carve_workspace(Arena& arena, const ResolvedAgentConfig& resolved, size_t num_params) {
   Workspace workspace;
   workspace.rows = resolved.chunk_rows;
   const auto rows = static_cast<size_t>(workspace.rows);
   const auto widest = static_cast<size_t>(std::max(resolved.actor.out, resolved.cost_critic.out));
-  workspace.actor = carve_actor_scratch(arena, resolved, workspace.rows);
+  workspace.sequences = carve_sequences(arena, resolved);
+  const int32_t steps = workspace.sequences.most * resolved.memory_chunk();
+  const int32_t acting = std::max(workspace.rows, steps);
+  workspace.actor = carve_actor_scratch(arena, resolved, acting);
   workspace.critic = resolved.groups.empty() && covers(resolved.actor, resolved.cost_critic)
                          ? workspace.actor
                          : carve_mlp_scratch(arena, resolved.cost_critic, workspace.rows);
   const size_t picked = resolved.critic_columns.size();
   workspace.critic.picked = picked ? arena.make<float>(rows * picked) : nullptr;
-  workspace.obs = arena.make<float>(rows * resolved.obs_dim());
+  workspace.obs = arena.make<float>(static_cast<size_t>(acting) * resolved.seen_dim());
   workspace.out = arena.make<float>(rows * widest);
   workspace.dout = arena.make<float>(rows * widest);
   workspace.grad = arena.make<float>(num_params);
@@ -90,9 +127,12 @@ void BatchWorkers::reduce(Sweep& sweep, float* total, size_t begin, size_t end) 
 void BatchWorkers::cut(Sweep& s, int32_t chunk_rows) {
   for (s.chunks = 0; s.chunks < count_ && !s.over(); ++s.chunks) {
     const Segment segment = s.batch.segment(s.block);
-    const int32_t rows = (segment.rows + s.stride - 1) / s.stride, here = std::min(chunk_rows, rows - s.done);
-    const bool ends = s.done + here == rows;
+    const int32_t rows = (segment.rows + s.stride - 1) / s.stride;
     const int32_t* first = s.batch.order + segment.first + s.done * s.stride;
+    int32_t here = std::min(chunk_rows, rows - s.done);
+    if (s.batch.path && here > 0)
+      here = whole_sequences(s.batch, first, rows - s.done, here, most_sequences_);
+    const bool ends = s.done + here == rows;
     workspaces_[s.chunks].chunk = {s.block, first, here, s.done == 0, ends};
     s.done = ends ? 0 : s.done + here;
     s.block += ends;
@@ -106,6 +146,7 @@ void BatchWorkers::carve(Arena& arena, const ResolvedAgentConfig& resolved, size
   while ((1 << levels) < resolved.blocks) ++levels;
   nodes_ = arena.make<float>(levels * num_params);
   count_ = resolved.workers;
+  most_sequences_ = most_sequences(resolved);
   workspaces_ = arena.make<Workspace>(static_cast<size_t>(count_));
   for (int32_t i = 0; i < count_; ++i) {
     const Workspace workspace = carve_workspace(arena, resolved, num_params);

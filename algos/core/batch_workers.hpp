@@ -49,6 +49,9 @@ struct Batch {
   int32_t rows = 0;                   // of all blocks of all ranks: what means divide by
   int32_t blocks = 1;                 // of this rank
   const Segment* segments = nullptr;  // [blocks] of order; null: one of all rows
+  // Rows that belong together, so that a chunk does not end between them: those of one of so many environments, of so
+  // many decisions in a row (rollout/sequences.hpp), which stand one behind the other. path 0: each by itself.
+  int32_t envs = 0, path = 0;
 };
 
 // What one thread does of a batch at a time.
@@ -72,12 +75,25 @@ struct Sweep {
   int32_t depth = 0;            // nodes of the tree that wait (BatchWorkers::reduce)
 };
 
+// Sequences of a chunk, of an actor that learns through its memory (rollout/sequences.hpp); time-major.
+struct SequenceSpace {
+  int32_t most = 0;              // sequences
+  int32_t count = 0, steps = 0;  // of the chunk at hand
+  int32_t *env = nullptr, *begin = nullptr,
+          *last = nullptr;                // [most] of each: where, its first row, its last listed one
+  int32_t* place = nullptr;               // [chunk_rows] of a listed row among all steps
+  uint8_t* clear = nullptr;               // [most path]
+  float* h0 = nullptr;                    // [most][units]
+  float *out = nullptr, *dout = nullptr;  // [most path][actor's outputs]
+};
+
 // Workspace of one chunk in flight.
 struct Workspace {
   int32_t rows = 0;
   ActorScratch actor;
   MlpScratch critic;
-  float* obs = nullptr;                   // [rows][obs_dim]
+  SequenceSpace sequences;
+  float* obs = nullptr;                   // [rows][seen_dim]; with sequences as many as these have steps
   float *out = nullptr, *dout = nullptr;  // [rows][widest output]
   float* grad = nullptr;                  // [num_params]
   BatchSums sums;
@@ -167,7 +183,7 @@ class BatchWorkers {
 
   Ranks ranks_;
   Workspace* workspaces_ = nullptr;
-  int32_t count_ = 0;
+  int32_t count_ = 0, most_sequences_ = 0;
   float* nodes_ = nullptr;  // [levels of the tree over this rank's blocks][num_params]
   size_t num_params_ = 0;
   std::optional<Workers> threads_;

@@ -14,13 +14,19 @@ namespace {
 
 constexpr const char* kWhat = "agent state";
 
-// Options that came after the first files. A file has them, all of them behind the others, only where one is
-// not at its default: so files of before load, and an agent that uses none writes what it always did.
-constexpr const char* kLater[] = {"cost_limit_per_step", "episode_steps"};
+// Options that came after the first files, by the release that they came with. A file has a group, behind all
+// before it, only where an option of it or of a later one is not at its default: so files of before load, and an
+// agent that uses none writes what it always did.
+constexpr const char* kLater[][4] = {{"cost_limit_per_step", "episode_steps"},
+                                     {"history", "history_fields", "memory", "memory_chunk"}};
+constexpr int32_t kGroups = static_cast<int32_t>(std::size(kLater));
 
-bool is_later(const OptionSpec& spec) {
-  return std::any_of(std::begin(kLater), std::end(kLater),
-                     [&](const char* key) { return same_name(key, spec.key); });
+// The group of an option, from 1 on; 0: of the first files.
+int32_t group_of(const OptionSpec& spec) {
+  for (int32_t g = 0; g < kGroups; ++g)
+    for (const char* key : kLater[g])
+      if (key && same_name(key, spec.key)) return g + 1;
+  return 0;
 }
 
 double option_number(const Options& o, int32_t i) {
@@ -38,18 +44,26 @@ double option_number(const Options& o, int32_t i) {
   return 0;
 }
 
-int32_t first_count(const Options& o) {
-  return o.count() - static_cast<int32_t>(std::size(kLater));
-}
-
-bool uses_later(const Options& o) {
-  for (int32_t i = 0; i < o.count(); ++i)
-    if (is_later(o.spec(i)) && option_number(o, i) != o.spec(i).number) return true;
-  return false;
-}
-
 const char* option_text(const Options& o, int32_t i) {
   return o.spec(i).kind == OptionKind::kText ? o.text(o.spec(i).key) : "";
+}
+
+int32_t first_count(const Options& o) {
+  int32_t count = 0;
+  for (int32_t i = 0; i < o.count(); ++i) count += group_of(o.spec(i)) == 0;
+  return count;
+}
+
+// The last group of which an option is not at its default.
+int32_t last_group(const Options& o) {
+  int32_t last = 0;
+  for (int32_t i = 0; i < o.count(); ++i) {
+    const OptionSpec& spec = o.spec(i);
+    const bool differs = spec.kind == OptionKind::kText ? std::strcmp(o.text(spec.key), spec.text) != 0
+                                                        : option_number(o, i) != spec.number;
+    if (differs) last = std::max(last, group_of(spec));
+  }
+  return last;
 }
 
 struct Field {
@@ -107,16 +121,13 @@ void write_fingerprint(Writer& out, const ResolvedAgentConfig& resolved) {
   for (int32_t i = 0; i < resolved.num_limited; ++i) out.value(resolved.column[i]);
   for (int32_t i = 0; i < resolved.num_limited; ++i) out.value(resolved.limit[i]);
   out.value(first_count(o));
-  const auto write = [&](bool later) {
+  for (int32_t group = 0; group <= last_group(o); ++group)
     for (int32_t i = 0; i < o.count(); ++i) {
-      if (is_later(o.spec(i)) != later) continue;
+      if (group_of(o.spec(i)) != group) continue;
       out.text(o.spec(i).key);
       out.text(option_text(o, i));
       out.value(option_number(o, i));
     }
-  };
-  write(false);
-  if (uses_later(o)) write(true);
   out.end_section();
 }
 
@@ -146,16 +157,18 @@ void read_fingerprint(Reader& in, ResolvedAgentConfig& resolved, bool apply) {
   Options& o = resolved.options;
   if (const auto there = in.value<int32_t>(); there != first_count(o))
     fail(Code::kFormat, "%s: it has %d options, this agent %d", kWhat, there, first_count(o));
-  const auto read = [&](bool later) {
+  const int32_t wanted = last_group(o);
+  for (int32_t group = 0; group <= kGroups; ++group) {
+    if (group > 0 && in.left() == 0) {
+      if (group > wanted) break;
+      const auto differs = [&](int32_t i) { return group_of(o.spec(i)) == wanted; };
+      int32_t i = 0;
+      while (!differs(i)) ++i;
+      fail(Code::kFormat, "%s: it lacks option %s and others of this agent", kWhat, o.spec(i).key);
+    }
     for (int32_t i = 0; i < o.count(); ++i)
-      if (is_later(o.spec(i)) == later) read_option(in, o, i, apply);
-  };
-  read(false);
-  if (in.left() > 0)
-    read(true);
-  else if (uses_later(o))
-    fail(Code::kFormat, "%s: it lacks the options cost_limit_per_step and episode_steps of this agent",
-         kWhat);
+      if (group_of(o.spec(i)) == group) read_option(in, o, i, apply);
+  }
   in.expect_end();
 }
 

@@ -9,6 +9,9 @@
 namespace rdm {
 namespace {
 constexpr const char* kNames[] = {"actor", "reward_critic", "cost_critic"};
+constexpr const char* kGruNames[] = {"memory.input.weight", "memory.input.bias", "memory.state.weight",
+                                     "memory.state.bias"};
+constexpr int32_t kGruTensors = 4;
 constexpr uint32_t kEyesStream = 3;    // of initial weights, behind those of the three networks
 constexpr uint32_t kGroupsStream = 4;  // of the second group's, and on; the first has the actor's
 
@@ -41,7 +44,9 @@ Networks carve_networks(Arena& arena, const ResolvedAgentConfig& resolved) {
   const auto list = [](const Vector<int32_t>& columns) { return columns.empty() ? nullptr : columns.data(); };
   n.columns[Networks::kActor] = list(resolved.actor_columns);
   n.columns[Networks::kReward] = n.columns[Networks::kCost] = list(resolved.critic_columns);
-  n.obs_dim = resolved.config.obs_dim;
+  n.obs_dim = static_cast<int32_t>(resolved.seen_dim());
+  n.history_inputs = resolved.history_inputs();
+  n.gru = resolved.gru;
   n.num_groups = resolved.num_groups();
   n.group = n.num_groups ? resolved.groups.data() : nullptr;
   n.group_steps = arena.make<int64_t>(static_cast<size_t>(n.num_groups));
@@ -92,6 +97,7 @@ ActorScratch carve_actor_scratch(Arena& arena, const ResolvedAgentConfig& resolv
   static_cast<MlpScratch&>(s) = carve_mlp_scratch(arena, resolved.actor, rows);
   if (!resolved.actor_columns.empty() || resolved.sees())
     s.picked = arena.make<float>(n * static_cast<size_t>(resolved.actor.in));
+  if (resolved.gru.units) s.memory = carve_recurrent_scratch(arena, {resolved.actor, resolved.gru}, rows);
   if (!resolved.sees()) return s;
   const auto features = static_cast<size_t>(resolved.eyes.features());
   s.eyes = carve_pointnet_scratch(arena, resolved.eyes);
@@ -133,6 +139,15 @@ void Networks::forward_groups(const float* weights, const float* x, int32_t rows
     mlp_forward(g.shape, weights + g.offset, g.columns ? own.picked : x, rows, own, scratch.part);
     spread_outputs(g, scratch.part, rows, width, y);
   }
+  if (state_std()) bound_std(rows, y);
+}
+
+void Networks::forward_memory_with(const float* weights, const float* x, const MemorySteps& m,
+                                   const ActorScratch& scratch, float* y) const {
+  const int32_t rows = m.steps * m.rows;
+  if (columns[kActor]) pick_columns(x, rows, obs_dim, columns[kActor], shape[kActor].in, scratch.picked);
+  recurrent_forward(actor(), weights, seen(kActor, x, scratch), m.steps, m.rows, m.h0, m.clear, scratch,
+                    scratch.memory, y);
   if (state_std()) bound_std(rows, y);
 }
 
@@ -187,7 +202,9 @@ void init_networks(const Networks& n, const ResolvedAgentConfig& resolved) {
   for (int32_t i = 0; i < n.count; ++i) {
     Stream stream(resolved.config.seed, static_cast<uint32_t>(i), Purpose::kInit);
     const double last = i == Networks::kActor ? resolved.shared.last_layer_scale : 1;
-    if (i > 0 || !n.num_groups) mlp_init(n.shape[i], stream, static_cast<float>(last), n.net(i));
+    if (i > 0 || !n.num_groups)
+      recurrent_init({n.shape[i], i == Networks::kActor ? n.gru : GruShape()}, stream, static_cast<float>(last),
+                     n.net(i));
   }
   const auto last_scale = static_cast<float>(resolved.shared.last_layer_scale);
   for (int32_t g = 0; g < n.num_groups; ++g) {
@@ -199,18 +216,24 @@ void init_networks(const Networks& n, const ResolvedAgentConfig& resolved) {
     Stream stream(resolved.config.seed, kEyesStream, Purpose::kInit);
     mlp_init(n.eyes.mlp, stream, 1, n.eyes_net());
   }
-  const auto first_actions = [&](const MlpShape& actor, float* net, int32_t first, int32_t count) {
-    float* bias = net + actor.bias_offset(actor.num_hidden);
+  // Of a network whose last layer's biases are these.
+  const auto first_actions = [&](float* bias, int32_t first, int32_t count) {
     float* log_std = n.state_std() ? bias + count : n.log_std() + first;
     for (int32_t j = 0; j < count; ++j) {
       bias[j] = resolved.config.initial_mean ? resolved.config.initial_mean[first + j] : 0;
       log_std[j] = static_cast<float>(elementary::log(resolved.shared.init_std));
     }
   };
-  float* const actor = n.net(Networks::kActor);
-  if (!n.num_groups) first_actions(n.shape[Networks::kActor], actor, 0, n.action_dim);
-  for (int32_t g = 0; g < n.num_groups; ++g)
-    first_actions(n.group[g].shape, actor + n.group[g].offset, n.group[g].first, n.group[g].count);
+  const RecurrentShape actor = n.actor();
+  const MlpShape head = actor.head();
+  if (!n.num_groups)
+    first_actions(n.net(Networks::kActor) + (n.gru.units ? actor.head_offset() + head.bias_offset(0)
+                                                         : actor.mlp.bias_offset(actor.mlp.num_hidden)),
+                  0, n.action_dim);
+  for (int32_t i = 0; i < n.num_groups; ++i) {
+    const ActorGroup& g = n.group[i];
+    first_actions(n.net(Networks::kActor) + g.offset + g.shape.bias_offset(g.shape.num_hidden), g.first, g.count);
+  }
 }
 
 void average_actor(const Networks& n) {
@@ -274,7 +297,7 @@ int32_t Networks::num_tensors() const {
   int32_t tensors = state_std() ? 0 : 1;
   for (int32_t g = 0; g < num_groups; ++g) tensors += 2 * group[g].shape.num_layers();
   for (int32_t i = num_groups ? 1 : 0; i < count; ++i) tensors += 2 * shape[i].num_layers();
-  return tensors + (eyes.points ? 2 * eyes.mlp.num_layers() : 0);
+  return tensors + (gru.units ? kGruTensors : 0) + (eyes.points ? 2 * eyes.mlp.num_layers() : 0);
 }
 
 void Networks::visit(StateIo& io) {
@@ -287,7 +310,7 @@ void Networks::visit(StateIo& io) {
   const StateView<float> p = io.numbers(params, size, -kMaxOutput, kMaxOutput);
   // Bound on what the actor gives, whose networks begin at `at`.
   const auto actor_bound = [&](const StateView<float>& list, size_t at) {
-    if (!num_groups) return mlp_bound(shape[kActor], From{list, at}, input_of(list, at));
+    if (!num_groups) return recurrent_bound(actor(), From{list, at}, input_of(list, at));
     double most = 0;
     for (int32_t g = 0; g < num_groups; ++g)
       most = std::max(most, mlp_bound(group[g].shape, From{list, at + group[g].offset}, input_bound));
@@ -348,7 +371,22 @@ bool find_tensor(const Networks& n, int32_t index, char* name, TensorInfo* out) 
       index -= tensors;
       continue;
     }
+    if (i == Networks::kActor && n.gru.units && index / 2 == s.num_hidden) {
+      const MlpShape head = n.actor().head();
+      const bool weight = index % 2 == 0;
+      std::snprintf(name, kTensorNameSize, "actor.%d.%s", s.num_hidden, weight ? "weight" : "bias");
+      float* const at = n.net(i) + n.actor().head_offset();
+      return set(head.out, weight ? head.in : 1, at + (weight ? 0 : head.bias_offset(0)));
+    }
     return layer(kNames[i], s, n.net(i));
+  }
+  if (n.gru.units && index < kGruTensors) {
+    const GruShape& g = n.gru;
+    float* const at = n.net(Networks::kActor) + n.actor().gru_offset();
+    const size_t offset[] = {0, g.input_bias_offset(), g.state_offset(), g.state_bias_offset()};
+    const int32_t cols[] = {g.in, 1, g.units, 1};
+    std::snprintf(name, kTensorNameSize, "%s", kGruNames[index]);
+    return set(3 * g.units, cols[index], at + offset[index]);
   }
   if (n.eyes.points && index < 2 * n.eyes.mlp.num_layers()) return layer("encoder", n.eyes.mlp, n.eyes_net());
   return false;

@@ -7,6 +7,9 @@
 // An actor in groups (option groups) is a network for each, one behind the other in the same block; the log deviations
 // before them are in the order of the actions. A gradient or a step may be of one group alone: `focus`.
 //
+// With option memory a GRU stands before the actor's last layer: its state comes from whoever runs it. With option
+// history the rows are stacked ones (rollout/memory.hpp).
+//
 // With std_mode=state there is no such deviation: the actor's network gives, behind each row's means, its log
 // deviations.
 #pragma once
@@ -25,10 +28,17 @@ struct Block {
 // Scratch of an actor: what its eyes need too. picked: the rows that its network sees, with features.
 struct ActorScratch : MlpScratch {
   PointNetScratch eyes;
+  RecurrentScratch memory;      // of an actor with a GRU
   int32_t* winner = nullptr;    // [rows][features]
   float* dfeatures = nullptr;   // [rows][features]
   MlpScratch* group = nullptr;  // [groups], of an actor in groups
   float* part = nullptr;        // [rows][widest output of a group]
+};
+// Steps of rows that an actor with a GRU runs over; zeros as h0 and no clears begin and keep its memory.
+struct MemorySteps {
+  int32_t steps = 1, rows = 0;
+  const float* h0 = nullptr;       // [rows][units]
+  const uint8_t* clear = nullptr;  // [steps][rows]
 };
 ActorScratch carve_actor_scratch(Arena& arena, const ResolvedAgentConfig& resolved, int32_t rows);
 
@@ -38,7 +48,9 @@ struct Networks {
   enum Index { kActor, kReward, kCost };
   MlpShape shape[3];
   const int32_t* columns[3] = {};     // [shape.in] entries of a row that the network sees; null: all
-  int32_t obs_dim = 0;                // of a row
+  int32_t obs_dim = 0;                // of a row, a stacked one
+  int32_t history_inputs = 0;         // of it, at its end
+  GruShape gru;                       // of the actor; units 0: none
   const ActorGroup* group = nullptr;  // [num_groups] of the actor; none: it is one network
   int32_t num_groups = 0;
   int64_t* group_steps = nullptr;  // [num_groups] of Adam
@@ -74,6 +86,7 @@ struct Networks {
   const float* kept_actor() const { return kept_log_std() + std_size; }
   // Of the encoder's parameters behind those of the actor's network.
   size_t eyes_offset() const { return actor_params; }
+  RecurrentShape actor() const { return {shape[kActor], gru}; }
   bool learns(int32_t g) const { return focus < 0 || g == focus; }
   // The groups that learn now: [first_group(), last_group()); of an actor of one network one.
   int32_t first_group() const { return std::max(focus, 0); }
@@ -84,6 +97,7 @@ struct Networks {
   float* eyes_net() const { return net(kActor) + eyes_offset(); }
   // Entries of the row that the actor sees, before its features.
   int32_t actor_entries() const { return shape[kActor].in - eyes.features(); }
+  int32_t row_entries() const { return actor_entries() - history_inputs; }  // without its history
   // y = network i of the rows x [rows][obs_dim], and the gradient of its block, grad laid out as params; x
   // and scratch as in the forward pass before. The actor's log deviations are those of the innovation, within
   // their bounds.
@@ -99,6 +113,20 @@ struct Networks {
   void forward_kept(const float* x, const PointRows& clouds, int32_t rows, const ActorScratch& scratch,
                     float* y) const {
     forward_actor_with(kept_actor(), x, clouds, rows, scratch, y);
+  }
+  // The same of an actor with a GRU: x [steps][rows][obs_dim], y [steps][rows][out]; its states [steps][rows][units]
+  // are in scratch.memory.h.
+  void forward_memory(const float* x, const MemorySteps& m, const ActorScratch& scratch, float* y) const {
+    forward_memory_with(net(kActor), x, m, scratch, y);
+  }
+  void forward_kept_memory(const float* x, const MemorySteps& m, const ActorScratch& scratch,
+                           float* y) const {
+    forward_memory_with(kept_actor(), x, m, scratch, y);
+  }
+  void backward_memory(const float* x, const MemorySteps& m, const ActorScratch& scratch, const float* dy,
+                       float* grad) const {
+    recurrent_backward(actor(), net(kActor), seen(kActor, x, scratch), m.steps, m.rows, m.clear, scratch,
+                       scratch.memory, dy, grad + net_offset(kActor));
   }
   void backward_actor(const float* x, const PointRows& clouds, int32_t rows, const ActorScratch& scratch,
                       const float* dy, float* grad) const;
@@ -132,6 +160,8 @@ struct Networks {
                           const ActorScratch& scratch, float* y) const;
   void forward_groups(const float* weights, const float* x, int32_t rows, const ActorScratch& scratch,
                       float* y) const;
+  void forward_memory_with(const float* weights, const float* x, const MemorySteps& m,
+                           const ActorScratch& scratch, float* y) const;
   const float* seen(int32_t i, const float* x, const MlpScratch& scratch) const {
     return columns[i] ? scratch.picked : x;
   }

@@ -6,6 +6,7 @@
 #include "algos/core/agent_types.hpp"
 #include "algos/core/shared_options.hpp"
 #include "base/option_rows.hpp"
+#include "nn/policy.hpp"
 
 namespace rdm {
 
@@ -203,7 +204,21 @@ inline constexpr auto kSharedRows = [] {
           "control steps after which an episode counts as ended; 0: max_steps of the configuration"))),
       row<&S::raw_costs, false, true>(text_option("cost_signal", "flag", "flag|raw",
                                                   "cost that rollouts learn from, and limits apply to: flag: "
-                                                  "`cost`; raw: `cost_raw` where above 0")));
+                                                  "`cost`; raw: `cost_raw` where above 0")),
+      // memory
+      row<&S::history>(integer_option(
+          "history", 1, 1, kMaxHistory,
+          "number of decisions whose observations the networks see: this one and those before it")),
+      row<&S::history_fields>(text_option(
+          "history_fields", "", nullptr,
+          "fields that a history keeps, written as in actor_obs; empty: all that the actor observes",
+          kLongestObs)),
+      row<&S::memory>(text_option(
+          "memory", "", nullptr,
+          "memory of the actor: gru:UNITS, a gated recurrent unit before its last layer; empty: none")),
+      row<&S::memory_chunk>(
+          integer_option("memory_chunk", 16, 1, 1 << 16,
+                         "decisions in a row through which the gradient of a memory flows back")));
 }();
 
 // The window alone: a rule with multipliers or one without.

@@ -205,6 +205,73 @@ void resolve_groups(ResolvedAgentConfig& resolved) {
   resolved.group_specs = std::move(specs);
 }
 
+// The columns that a history keeps, which the actor observes; they follow a row where networks see parts of it.
+void resolve_history(ResolvedAgentConfig& resolved) {
+  const AgentConfig& c = resolved.config;
+  const SharedOptions& o = resolved.shared;
+  if (o.history == 1) {
+    if (*o.history_fields) fail(Code::kArgument, "history_fields: it needs option history above 1");
+    return;
+  }
+  const Vector<int32_t>& actor = resolved.actor_columns;
+  Vector<int32_t>& kept = resolved.history_columns;
+  kept = *o.history_fields
+             ? select_columns("history_fields", o.history_fields, c.fields, c.num_fields, c.obs_dim)
+             : actor;
+  const auto unseen = [&](int32_t i) { return !std::binary_search(actor.begin(), actor.end(), i); };
+  if (!actor.empty() && kept.empty() && actor.size() < resolved.obs_dim())
+    fail(Code::kArgument, "history_fields: it names fields that the actor does not observe (actor_obs)");
+  for (const int32_t i : kept)
+    if (!actor.empty() && unseen(i))
+      fail(Code::kArgument, "history_fields: it names entry %d, which the actor does not observe (actor_obs)",
+           i);
+  const int64_t width = kept.empty() ? c.obs_dim : static_cast<int64_t>(kept.size());
+  const int64_t inputs = c.obs_dim + (o.history - 1) * width;
+  if (inputs > kMaxInputs)
+    fail(Code::kRange, "history: %d decisions of %lld entries are more than %d inputs of a network",
+         o.history, static_cast<long long>(width), kMaxInputs);
+  resolved.history = o.history;
+  resolved.history_width = static_cast<int32_t>(width);
+  for (Vector<int32_t>* columns : {&resolved.actor_columns, &resolved.critic_columns})
+    if (!columns->empty()) {
+      columns->reserve(columns->size() + static_cast<size_t>(inputs - c.obs_dim));
+      for (auto i = c.obs_dim; i < static_cast<int32_t>(inputs); ++i) columns->push_back(i);
+    }
+}
+
+// "gru:64"; blanks are skipped.
+void resolve_memory(ResolvedAgentConfig& resolved) {
+  const SharedOptions& o = resolved.shared;
+  const char* p = o.memory;
+  while (*p == ' ') ++p;
+  if (*p) {
+    char* end = nullptr;
+    const bool known = std::strncmp(p, "gru:", 4) == 0;
+    const long units = known ? std::strtol(p + 4, &end, 10) : 0;
+    while (known && *end == ' ') ++end;
+    if (!known || end == p + 4 || *end)
+      fail(Code::kArgument, "memory: '%s' is not a memory; write gru:64 for a GRU of 64 units",
+           Quoted(o.memory).text);
+    check_range("memory: the number of units", units, 1, kMaxUnits);
+    resolved.gru = with_gru(resolved.actor, static_cast<int32_t>(units)).gru;
+  }
+  if (!resolved.remembers()) return;
+  if (!resolved.groups.empty())
+    fail(Code::kUnsupported, "%s: it cannot be combined with several groups yet; groups=all has one network",
+         resolved.gru.units ? "memory" : "history");
+  if (resolved.gru.units && resolved.history > 1)
+    fail(Code::kUnsupported, "memory: it cannot be combined with option history; choose one of the two");
+  if (resolved.sees())
+    fail(Code::kUnsupported, "%s: it cannot be combined with option encoder yet",
+         resolved.gru.units ? "memory" : "history");
+  if (resolved.gru.units && resolved.options.knows("trust_kl"))
+    fail(Code::kUnsupported,
+         "memory: %s has no Fisher products through a memory yet; take an algorithm of the first order, such "
+         "as "
+         "ppo_lag, or option history",
+         resolved.row->info.name);
+}
+
 void resolve_networks(ResolvedAgentConfig& resolved) {
   const AgentConfig& c = resolved.config;
   const SharedOptions& o = resolved.shared;
@@ -212,11 +279,12 @@ void resolve_networks(ResolvedAgentConfig& resolved) {
     return select_columns(key, words, c.fields, c.num_fields, c.obs_dim);
   };
   const auto inputs = [&](const Vector<int32_t>& seen) {
-    return seen.empty() ? c.obs_dim : static_cast<int32_t>(seen.size());
+    return static_cast<int32_t>(seen.empty() ? resolved.seen_dim() : seen.size());
   };
   resolved.actor_columns = columns("actor_obs", o.actor_obs);
   resolve_groups(resolved);
   resolved.critic_columns = columns("critic_obs", o.critic_obs);
+  resolve_history(resolved);
   const int32_t actor_in = inputs(resolved.actor_columns), critic_in = inputs(resolved.critic_columns);
   resolve_eyes(resolved);
   const auto critic = [&](int32_t outputs) {
@@ -225,6 +293,7 @@ void resolve_networks(ResolvedAgentConfig& resolved) {
   };
   resolved.actor = parse_shape("hidden", o.hidden, o.activation, actor_in + resolved.eyes.features(),
                                o.state_std ? 2 * c.action_dim : c.action_dim);
+  resolve_memory(resolved);
   resolved.reward_critic = critic(1);
   resolved.cost_critic = critic(std::max(resolved.num_limited, 1));
   check_mlp_shape(resolved.actor);

@@ -6,6 +6,7 @@
 #include "algos/core/agent_types.hpp"
 #include "algos/core/groups.hpp"
 #include "algos/core/shared_options.hpp"
+#include "nn/gru.hpp"
 #include "nn/pointnet.hpp"
 
 namespace rdm {
@@ -29,7 +30,12 @@ struct ResolvedAgentConfig {
   // What the actor sees of points: features that stand behind its entries of the row. points 0: nothing.
   PointNetShape eyes;
   bool frozen = false;  // they do not learn
-  // Entries of the row that these see, ascending; empty: all.
+  // With option history networks see stacked rows: behind a row the columns history_columns (empty: all) of the
+  // decisions before it, newest first, history_width numbers each, history - 1 times.
+  int32_t history = 1, history_width = 0;
+  Vector<int32_t> history_columns;
+  GruShape gru;  // of the actor, before its last layer; units 0: none
+  // Entries of the stacked row that these see, ascending; empty: all.
   Vector<int32_t> actor_columns, critic_columns;
   // The actor's groups, where it has several (option groups), and what each sees; none: it is one network. The shape
   // `actor` then is of all of them: every entry of the row, all actions.
@@ -51,12 +57,18 @@ struct ResolvedAgentConfig {
   int32_t num_groups() const { return static_cast<int32_t>(groups.size()); }
   // Of the actor's networks, its eyes apart.
   size_t actor_params() const {
-    return groups.empty() ? actor.num_params() : group_params(groups.data(), num_groups());
+    return groups.empty() ? RecurrentShape{actor, gru}.num_params() : group_params(groups.data(), num_groups());
   }
   bool sees() const { return eyes.points > 0; }
   // The actor's network gives log deviations behind its means.
   bool state_std() const { return actor.out != config.action_dim; }
   size_t obs_dim() const { return static_cast<size_t>(config.obs_dim); }
+  // Of a stacked row, and of what is remembered of a world.
+  int32_t history_inputs() const { return (history - 1) * history_width; }
+  size_t seen_dim() const { return obs_dim() + static_cast<size_t>(history_inputs()); }
+  size_t state_dim() const { return static_cast<size_t>(gru.units + history_inputs()); }
+  bool remembers() const { return state_dim() > 0; }
+  int32_t memory_chunk() const { return std::min(shared.memory_chunk, shared.horizon); }
   size_t action_dim() const { return static_cast<size_t>(config.action_dim); }
   size_t num_envs() const { return static_cast<size_t>(config.num_envs); }
   // Of all ranks.

@@ -57,6 +57,10 @@ struct SharedOptions {
   double cost_limit, cost_limit_per_step;
   int32_t episode_steps;
   bool raw_costs;  // cost_signal
+  // memory
+  int32_t history;
+  const char *history_fields, *memory;
+  int32_t memory_chunk;
 };
 
 }  // namespace rdm

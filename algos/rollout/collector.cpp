@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "algos/core/option_tables.hpp"
+#include "algos/rollout/sequences.hpp"
 #include "base/elementary.hpp"
 #include "base/error.hpp"
 #include "nn/kernels.hpp"
@@ -56,6 +57,7 @@ void Collector::carve(Arena& arena, const ResolvedAgentConfig& resolved) {
   scaled_reward_ = arena.make<float>(resolved.num_envs());
   scaled_cost_ = arena.make<float>(resolved.num_envs() * static_cast<size_t>(resolved.config.cost_dim));
   noise_.carve(arena, resolved);
+  memory_.carve(arena, resolved);
   if (resolved.shared.normalize_obs) usual_.carve(arena, resolved.num_envs());
   episodes_.carve(
       arena, resolved.config.num_envs, resolved.config.cost_dim,
@@ -82,6 +84,7 @@ void Collector::open(const ResolvedAgentConfig& resolved, const Networks& nets, 
   nets_ = &nets;
   workers_ = &workers;
   noise_.reset(resolved.config.seed, resolved.config.ranks.rank * resolved.config.num_envs);
+  memory_.open(resolved, rollout_);
   normalizer_.clip = static_cast<float>(shared().obs_clip);
 }
 
@@ -95,6 +98,13 @@ void Collector::drop() {
   std::fill_n(status_, EpochTotals::kStatusKinds, int64_t{0});
 }
 
+void Collector::forget(bool by_mean, const uint8_t* mask) {
+  if (!memory_) return;
+  if (!by_mean && pending_)
+    fail(Code::kState, "forget: the actions that were sampled last have not been recorded");
+  memory_.forget(by_mean, mask);
+}
+
 const float* Collector::normalized(const float* obs, int32_t rows, float* memory) const {
   if (!normalizes()) return obs;
   normalizer_apply(normalizer_, obs, rows, memory);
@@ -103,7 +113,7 @@ const float* Collector::normalized(const float* obs, int32_t rows, float* memory
 
 Novelty Collector::novelty(const float* row) const {
   return novelty_of({row, normalizer_.shift, normalizer_.scale, nets_->columns[Networks::kActor], true},
-                    nets_->actor_entries());
+                    nets_->row_entries());
 }
 
 void Collector::measure_usual(const float* obs, int32_t rows) {
@@ -126,10 +136,17 @@ void Collector::split_head(const float* y, int32_t rows, float* mean, float* log
   }
 }
 
-void Collector::mean_rows(const Workspace& workspace, const float* obs, const PointRows& clouds, int32_t rows,
-                          float* action) const {
+void Collector::mean_rows(const Workspace& workspace, const float* obs, const PointRows& clouds,
+                          int32_t first, int32_t rows, float* action) {
   float* y = nets_->state_std() ? workspace.out : action;
-  nets_->forward_kept(normalized(obs, rows, workspace.obs), clouds, rows, workspace.actor, y);
+  const float* x = normalized(obs, rows, workspace.obs);
+  if (nets_->gru.units) {
+    nets_->forward_kept_memory(x, {1, rows, memory_.state(first, true)}, workspace.actor, y);
+    memory_.keep_next(first, rows, true, workspace.actor.memory.h);
+  } else {
+    nets_->forward_kept(stacked(workspace, x, first, rows, true), clouds, rows, workspace.actor, y);
+    if (memory_) memory_.push_mean(normalized(obs, rows, workspace.obs), first, rows);
+  }
   if (y != action) split_head(y, rows, action, nullptr);
 }
 
@@ -159,12 +176,18 @@ void Collector::act_rows(const Workspace& workspace, const float* obs, const Poi
   if (normalized(obs, rows, x) != x)
     std::memcpy(x, obs, static_cast<size_t>(rows) * r.obs_dim * sizeof(float));
   float *mean = r.mean + at * dim, *y = nets_->state_std() ? workspace.out : mean;
-  nets_->forward_actor(x, keep_points(clouds, at, rows), rows, workspace.actor, y);
+  const float* seen = stacked(workspace, x, first, rows, false);
+  if (nets_->gru.units) {
+    nets_->forward_memory(x, {1, rows, memory_.state(first, false)}, workspace.actor, y);
+    memory_.keep_next(first, rows, false, workspace.actor.memory.h);
+  } else {
+    nets_->forward_actor(seen, keep_points(clouds, at, rows), rows, workspace.actor, y);
+  }
   for (size_t i = 0; r.features && i < static_cast<size_t>(rows); ++i)
     std::memcpy(r.features + (at + i) * r.row_features,
                 nets_->features(workspace.actor) + i * nets_->feature_step(), r.row_features * sizeof(float));
   if (y != mean) split_head(y, rows, mean, r.log_std_of(at));
-  values(workspace, x, rows, r.value + at, r.cost_value + at * static_cast<size_t>(r.num_costs));
+  values(workspace, seen, rows, r.value + at, r.cost_value + at * static_cast<size_t>(r.num_costs));
   float own_std[kMaxActions];
   for (size_t i = 0; i < static_cast<size_t>(rows); ++i) {
     float* centered = r.action + (at + i) * dim;
@@ -209,7 +232,7 @@ void Collector::act(const float* obs, bool sample, float* action, const PointRow
   if (sample) return decide(obs, clouds, action, nullptr);
   workers_->sweep(envs, share(envs), [&](const Workspace& workspace, int32_t first, int32_t rows) {
     const auto at = static_cast<size_t>(first);
-    mean_rows(workspace, obs + at * rollout_.obs_dim, clouds.from(nets_->eyes, at), rows,
+    mean_rows(workspace, obs + at * rollout_.obs_dim, clouds.from(nets_->eyes, at), first, rows,
               action + at * rollout_.action_dim);
   });
 }
@@ -221,6 +244,7 @@ void Collector::decide(const float* obs, const PointRows& clouds, float* action,
     rollout_.log_std[j] = nets_->log_std()[j] + resolved_->log_share;
     std_[j] = static_cast<float>(elementary::exp(static_cast<double>(rollout_.log_std[j])));
   }
+  if (memory_) memory_.begin_decision();
   const int32_t envs = rollout_.num_envs;
   workers_->sweep(envs, share(envs), [&](const Workspace& workspace, int32_t first, int32_t rows) {
     const auto at = static_cast<size_t>(first), dim = rollout_.action_dim;
@@ -326,7 +350,9 @@ void Collector::value_truncated(const Transition& t) {
     for (size_t i = 0; i < static_cast<size_t>(rows); ++i)
       std::memcpy(workspace.obs + i * dim, t.final_obs + static_cast<size_t>(env[i]) * dim,
                   dim * sizeof(float));
-    values(workspace, normalized(workspace.obs, rows, workspace.obs), rows, workspace.out, workspace.dout);
+    const float* x = normalized(workspace.obs, rows, workspace.obs);
+    if (memory_ && memory_.stacks()) memory_.stack_after(x, env, rows, workspace.obs);
+    values(workspace, x, rows, workspace.out, workspace.dout);
     for (size_t i = 0; i < static_cast<size_t>(rows); ++i) {
       final_value_[env[i]] = workspace.out[i];
       std::memcpy(final_cost_ + static_cast<size_t>(env[i]) * costs, workspace.dout + i * costs,
@@ -377,13 +403,18 @@ void Collector::scale_rewards(const Transition& t) {
   }
 }
 
+// An invalid row that begins an episode and does not end it: it only resets.
+bool Collector::resets(const Transition& t, int32_t env) const {
+  const auto e = static_cast<size_t>(env);
+  const bool over = flag(t.terminated, e, false) || flag(t.truncated, e, false);
+  return !flag(t.valid, e, true) && !over && episodes_.length(env) == 0;
+}
+
 // What statistics and limits count of a row: everything of a valid one. Of an invalid row only the cost counts, and
 // its time and success unless the row is a mere reset (the first row of an episode, which does not end it).
 void Collector::count_row(const Transition& t, int32_t env, const float* cost, int32_t steps) {
   const auto e = static_cast<size_t>(env), columns = static_cast<size_t>(resolved_->config.cost_dim);
-  const bool valid = flag(t.valid, e, true);
-  const bool over = flag(t.terminated, e, false) || flag(t.truncated, e, false);
-  const bool resets = !valid && !over && episodes_.length(env) == 0;
+  const bool valid = flag(t.valid, e, true), resets = this->resets(t, env);
   const int32_t taken = resets ? 0 : steps;
   const double weight =
       shared().discounted_limit ? elementary::pow(shared().discount, episodes_.length(env)) : 1;
@@ -423,6 +454,8 @@ void Collector::record_row(const Transition& t, int32_t env) {
   const int32_t steps = t.steps ? t.steps[e] : shared().action_repeat;
   const auto discount = static_cast<float>(elementary::pow(shared().discount, steps));
   float* limited = r.cost + at * costs;
+  if (memory_ && (flag(t.terminated, e, false) || flag(t.truncated, e, false) || resets(t, env)))
+    memory_.clear(env);
   count_row(t, env, cost, steps);
   r.valid[at] = flag(t.valid, e, true);
   if (r.valid[at]) {
@@ -452,6 +485,7 @@ void Collector::follow(const Transition& t) {
   value_truncated(t);
   scale_rewards(t);
   episodes_.tick();
+  if (memory_) memory_.advance();
   for (int32_t env = 0; env < rollout_.num_envs; ++env) record_row(t, env);
   ++rollout_.filled;
   pending_ = false;
@@ -512,7 +546,9 @@ EpochTotals Collector::totals() const {
 Batch Collector::minibatch(int32_t i, int32_t parts) const {
   const Ranks& ranks = workers_->ranks();
   const auto part = [&](int32_t rows) {
-    const int64_t size = (rows + parts - 1) / parts, first = std::min<int64_t>(i * size, rows);
+    int64_t size = (rows + parts - 1) / parts;
+    if (rollout_.path) size = (size + rollout_.path - 1) / rollout_.path * rollout_.path;  // whole sequences
+    const int64_t first = std::min<int64_t>(i * size, rows);
     return Segment{static_cast<int32_t>(first), static_cast<int32_t>(std::min<int64_t>(size, rows - first))};
   };
   Batch batch = listed_rows_;
@@ -538,7 +574,7 @@ void Collector::begin_estimate(const float* last_obs) {
                   [&](const Workspace& workspace, int32_t first, int32_t rows) {
                     const auto at = static_cast<size_t>(first);
                     const float* x = normalized(last_obs + at * r.obs_dim, rows, workspace.obs);
-                    values(workspace, x, rows, r.last_value + at,
+                    values(workspace, stacked(workspace, x, first, rows, false), rows, r.last_value + at,
                            r.last_cost_value + at * static_cast<size_t>(r.num_costs));
                   });
   column_ = -1;
@@ -562,13 +598,15 @@ void Collector::list_rows() {
   const int32_t envs = ranks.block_envs();
   int32_t* const own = block_rows_ + ranks.first_block();
   for (int32_t b = 0, at = 0; b < ranks.blocks(); ++b, at += own[b - 1]) {
-    own[b] = list_valid(r, b * envs, envs, at);
+    if (r.path) restart_sequences(r, b * envs, envs);
+    own[b] = r.path ? list_sequences(r, b * envs, envs, at, nullptr) : list_valid(r, b * envs, envs, at);
     segments_[b] = {at, own[b]};
   }
   ranks.gather(own, static_cast<size_t>(ranks.blocks()) * sizeof *own, block_rows_);
   listed_rows_ = Batch(r.order, 0);
   listed_rows_.blocks = ranks.blocks();
   listed_rows_.segments = segments_;
+  listed_rows_.envs = r.num_envs, listed_rows_.path = r.path;
   for (int32_t b = 0; b < ranks.blocks() * ranks.count(); ++b) listed_rows_.rows += block_rows_[b];
 }
 
@@ -585,6 +623,7 @@ void Collector::visit(StateIo& io) {
   noise_.visit(io);
   episodes_.visit(io);
   usual_.visit(io);
+  memory_.visit(io);
 }
 
 }  // namespace rdm

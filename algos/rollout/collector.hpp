@@ -2,6 +2,7 @@
 //
 //   act       x = clip((obs - shift) scale, +-obs_clip), shift and scale of all observations so far, this one
 //             included; mean = actor(x); action = mean + noise (noise.hpp); V and V_c of x for the advantages
+//   memory    what networks see beside a row of the decisions before (memory.hpp)
 //   put       the same for an action that was sampled elsewhere, and record
 //   record    r_t, c_t and d_t = discount^steps of the decision; at a truncation the value of the final
 //             observation is added, discounted; at a termination costs may be charged on (terminal_cost)
@@ -15,6 +16,7 @@
 #include "algos/core/batch_workers.hpp"
 #include "algos/core/networks.hpp"
 #include "algos/rollout/limits.hpp"
+#include "algos/rollout/memory.hpp"
 #include "algos/rollout/noise.hpp"
 #include "algos/rollout/rollout.hpp"
 #include "algos/rollout/usual.hpp"
@@ -50,6 +52,9 @@ class Collector {
   // Nothing is collected and no act waits for its record.
   bool idle() const { return rollout_.filled == 0 && !pending_; }
   void drop();
+  // The memory of environments begins anew where mask [num_envs] is not 0 (null: of all), of sampling or of acting by
+  // the mean. Error(kState) while a sample waits for its record.
+  void forget(bool by_mean, const uint8_t* mask);
 
   // Brings in what other ranks counted since.
   void settle();
@@ -107,8 +112,15 @@ class Collector {
   int32_t share(int32_t rows) const;  // of a worker's chunk
   // What a network with std_mode=state gives, taken apart: means, log deviations (null: not wanted).
   void split_head(const float* y, int32_t rows, float* mean, float* log_std) const;
-  void mean_rows(const Workspace& workspace, const float* obs, const PointRows& clouds, int32_t rows,
-                 float* action) const;
+  void mean_rows(const Workspace& workspace, const float* obs, const PointRows& clouds, int32_t first,
+                 int32_t rows, float* action);
+  // Rows x, normalised, as the networks see them: with a history in the workspace's obs.
+  const float* stacked(const Workspace& workspace, const float* x, int32_t first, int32_t rows,
+                       bool by_mean) const {
+    if (!memory_ || !memory_.stacks()) return x;
+    memory_.stack(x, first, rows, by_mean, workspace.obs);
+    return workspace.obs;
+  }
   void check_clouds(const PointRows& clouds) const;
   // Keeps what is learned from of a row's clouds; what the actor is to see.
   PointRows keep_points(const PointRows& clouds, size_t at, int32_t rows) const;
@@ -122,6 +134,7 @@ class Collector {
   void merge(Normalizer& n, const float* x, const uint8_t* mask, double count_max);
   void check_flags(const char* name, const uint8_t* flags) const;
   void record_row(const Transition& t, int32_t env);
+  bool resets(const Transition& t, int32_t env) const;
   void count_row(const Transition& t, int32_t env, const float* cost, int32_t steps);
   void end_row(const Transition& t, int32_t env, float discount, float* sample_cost);
   void charge_fall(int32_t env, float discount, float* sample_cost, double* charge) const;
@@ -133,6 +146,7 @@ class Collector {
   Normalizer normalizer_, reward_scale_, cost_scale_;
   Noise noise_;
   UsualRows usual_;
+  AgentMemory memory_;
   Episodes episodes_;
   float* std_ = nullptr;          // [action_dim] of the innovation; none with std_mode=state
   float* final_value_ = nullptr;  // [num_envs] V of the final observation after truncation, else 0

@@ -16,6 +16,40 @@ inline void fetch(const float* row, size_t n) {
   for (size_t j = 0; j < n; j += kLine) __builtin_prefetch(row + j);
 }
 
+void carve_memory(Arena& arena, const ResolvedAgentConfig& resolved, Rollout& r) {
+  if (!resolved.remembers()) return;
+  r.age = arena.make<int32_t>(static_cast<size_t>(resolved.samples));
+  if (resolved.history > 1) {
+    r.depth = resolved.history - 1, r.width = resolved.history_width;
+    r.columns = resolved.history_columns.empty() ? nullptr : resolved.history_columns.data();
+    r.before = arena.make<float>(resolved.num_envs() * resolved.state_dim());
+  }
+  if (resolved.gru.units) {
+    r.path = resolved.memory_chunk(), r.units = resolved.gru.units;
+    const size_t count = static_cast<size_t>(r.paths()) * resolved.num_envs();
+    r.state = arena.make<float>(count * static_cast<size_t>(r.units));
+    r.sequence = arena.make<int32_t>(count);
+  }
+}
+
+// The history of row `at`: what decisions before it saw, newest first, zeros where the memory had been cleared.
+void gather_history(const Rollout& r, int32_t at, float* x) {
+  const int32_t t = at / r.num_envs, env = at % r.num_envs, age = r.age[at];
+  const auto width = static_cast<size_t>(r.width);
+  for (int32_t j = 1; j <= r.depth; ++j, x += width) {
+    if (j > age) {
+      std::memset(x, 0, width * sizeof(float));
+    } else if (j > t) {
+      const size_t kept =
+          static_cast<size_t>(env) * static_cast<size_t>(r.depth) + static_cast<size_t>(j - t - 1);
+      std::memcpy(x, r.before + kept * width, width * sizeof(float));
+    } else {
+      const float* row = r.obs + static_cast<size_t>(at - j * r.num_envs) * r.obs_dim;
+      for (size_t i = 0; i < width; ++i) x[i] = row[r.columns ? static_cast<size_t>(r.columns[i]) : i];
+    }
+  }
+}
+
 }  // namespace
 
 Rollout carve_rollout(Arena& arena, const ResolvedAgentConfig& resolved) {
@@ -51,6 +85,7 @@ Rollout carve_rollout(Arena& arena, const ResolvedAgentConfig& resolved) {
   r.std_step = resolved.state_std() ? r.action_dim : 0;
   r.log_std = arena.make<float>(resolved.state_std() ? n * r.action_dim : r.action_dim);
   r.order = arena.make<int32_t>(n);
+  carve_memory(arena, resolved, r);
   return r;
 }
 
@@ -118,9 +153,11 @@ void gather_obs(const Rollout& r, const int32_t* order, int32_t stride, int32_t 
     return r.obs + static_cast<size_t>(order[i * static_cast<size_t>(stride)]) * r.obs_dim;
   };
   const auto rows = static_cast<size_t>(n);
+  const size_t seen = r.seen_dim();
   for (size_t i = 0; i < rows; ++i) {
     if (i + kAhead < rows) fetch(row(i + kAhead), r.obs_dim);
-    std::memcpy(x + i * r.obs_dim, row(i), r.obs_dim * sizeof(float));
+    std::memcpy(x + i * seen, row(i), r.obs_dim * sizeof(float));
+    if (r.depth) gather_history(r, order[i * static_cast<size_t>(stride)], x + i * seen + r.obs_dim);
   }
 }
 

@@ -14,7 +14,7 @@ struct Rollout {
   int32_t num_groups = 0;
 
   // [samples] rows of:
-  float* obs = nullptr;                     // [obs_dim] as the networks saw it
+  float* obs = nullptr;                     // [obs_dim] as the networks saw it, without its history
   int16_t* points = nullptr;                // [eyes.points][3], of an actor whose eyes learn
   uint8_t* point_class = nullptr;           // [eyes.points], with classes
   uint8_t* point_color = nullptr;           // [eyes.points][3], with colours
@@ -34,6 +34,19 @@ struct Rollout {
   float *gain = nullptr, *linear = nullptr;
   float *last_value = nullptr, *last_cost_value = nullptr;  // [num_envs], [num_envs][num_costs]
   int32_t* order = nullptr;  // [samples] valid rows, block after block, shuffled
+
+  // What an agent with a memory keeps. age [samples]: decisions since the memory was cleared, within this horizon, no
+  // more than count: kWholeMemory where it was not.
+  static constexpr int32_t kWholeMemory = 1 << 30;
+  int32_t* age = nullptr;
+  int32_t depth = 0, width = 0;      // history: decisions before, and numbers of each
+  const int32_t* columns = nullptr;  // [width] of a row; null: all
+  float* before = nullptr;           // [num_envs][depth][width] history where the horizon began
+  int32_t path = 0, units = 0;       // GRU: decisions through which gradients flow, and its units
+  float* state = nullptr;            // [paths][num_envs][units] before the first decision of each path
+  int32_t* sequence = nullptr;       // [paths num_envs] paths in the order of minibatches, block after block
+  int32_t paths() const { return path ? (horizon + path - 1) / path : 0; }
+  size_t seen_dim() const { return obs_dim + static_cast<size_t>(depth) * static_cast<size_t>(width); }
 
   float* log_std_of(size_t at) const { return log_std + at * std_step; }
   // Entries of the action that one network gives.
@@ -72,7 +85,8 @@ inline double sample_ratio(const Rollout& r, size_t at, const float* mean, const
 // KL(old || now) of the same.
 double sample_kl(const Rollout& r, size_t at, size_t first, size_t last, const float* mean,
                  const float* log_std);
-// Copies the observations of n listed rows, every stride-th entry of the list, to x [n][obs_dim].
+// Copies the observations of n listed rows, every stride-th entry of the list, with their histories to x
+// [n][seen_dim].
 void gather_obs(const Rollout& r, const int32_t* order, int32_t stride, int32_t n, float* x);
 // Asks the memory for the actions and old means of n listed rows, which a loss is about to read.
 void expect_actions(const Rollout& r, const int32_t* order, int32_t n);

@@ -30,6 +30,9 @@ typedef struct rdm_policy_info { /* what a policy file says of its network */
   uint64_t generation;        /* which network it is: the low 32 bits are the epochs that its agent
                                * had learned, the high ones a checksum. Data sampled by another
                                * generation are stale. 0: unknown */
+  int32_t state_dim;          /* numbers that it remembers of each world, for rdm_policy_act_state;
+                               * 0: it has no memory */
+  int32_t reserved2;          /* 0 */
 } rdm_policy_info;
 RDM_API rdm_result rdm_policy_read(rdm_policy **out, const void *bytes,
                                    size_t size); /* copies bytes [size] */
@@ -56,7 +59,7 @@ RDM_API size_t rdm_policy_scratch(const rdm_policy *p, int32_t rows); /* bytes f
  * [scratch_bytes]: rdm_policy_scratch bytes or more, of any alignment. No heap, no hidden state:
  * any number of threads, each with its own scratch. ARGUMENT when obs or noise is not finite, or so
  * large that the network overflows (action is written then, but meaningless). STATE for a policy
- * that reads points. */
+ * that reads points or has a memory. */
 RDM_API rdm_result rdm_policy_act(const rdm_policy *p, const float *obs, int32_t rows,
                                   const float *noise, float *action, void *scratch,
                                   size_t scratch_bytes);
@@ -90,7 +93,10 @@ RDM_API rdm_result rdm_policy_novelty(const rdm_policy *p, const float *obs, int
  * In a policy that reads points, "actor.0.weight" has further columns for the features, and there
  * are "encoder.0.weight" and so on, "encoder.origin" and "encoder.range", in m,
  * "encoder.activation" (0 tanh, 1 elu, 2 relu), "example.points", in m, and
- * "example.point_class". */
+ * "example.point_class". In a policy with a GRU there are "memory.input.weight" and ".bias" and
+ * "memory.state.weight" and ".bias", rows of the gates r, z and n; the GRU stands before the last
+ * layer. In one with a history "actor.0.weight" has further columns, for its state, and there is
+ * "history.columns", which entries of a row it keeps of each decision. */
 RDM_API rdm_result rdm_policy_tensor_at(const rdm_policy *p, int32_t i, rdm_tensor *out);
 /* Copies the named tensor to out [count]; count must be rows * cols. NOT_FOUND, RANGE. */
 RDM_API rdm_result rdm_policy_get_tensor(const rdm_policy *p, const char *name, float *out,

@@ -100,6 +100,7 @@
 #include <redman/map.h>    /* what is occupied, free and unknown in space                */
 #include <redman/plan.h>   /* actors and planners, which choose actions without learning */
 #include <redman/shield.h> /* shields, which keep costs within their budgets             */
+#include <redman/memory.h> /* agents and policies that remember                          */
 #include <redman/record.h> /* trajectories as data, and what is learned from them        */
 #include <redman/ranks.h>  /* learning in several processes together                     */
 #include <redman/team.h>   /* several policies that act together                         */

@@ -1,7 +1,7 @@
 // redman/redman.hpp: C++17 for the stable headers. Classes that own a handle and destroy it,
 // views of buffers, exceptions; no behaviour of its own. What a call does, needs and returns is
-// described in the C header of the same name. Classes for experimental headers are in sense.hpp,
-// map.hpp, plan.hpp, shield.hpp, record.hpp and team.hpp.
+// described in the C header of the same name. What is for experimental headers is in sense.hpp,
+// map.hpp, plan.hpp, shield.hpp, memory.hpp, record.hpp and team.hpp.
 //
 //   redman::Pool pool(redman::pool_config("hand_over_safe_finger", 16));
 //   pool.reset();

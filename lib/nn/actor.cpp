@@ -70,7 +70,9 @@ void Actor::carve(Arena& arena) {
   held_ = arena.make<float>(n * width);
   memory_ = arena.make<float>(stochastic_ ? n * width : 0);
   center_ = arena.make<float>(width);
+  state_ = arena.make<float>(n * sz(v.state_dim()));
   due_ = arena.make<int32_t>(n);
+  due_state_ = arena.make<float>(n * sz(v.state_dim()));
   obs_ = arena.make<float>(n * sz(v.obs_dim()));
   action_ = arena.make<float>(n * width);
   noise_ = arena.make<float>(stochastic_ ? n * width : 0);
@@ -114,21 +116,24 @@ void Actor::destroy(Actor* a) {
 
 void Actor::reset(const uint8_t* first, const uint8_t* second) {
   const bool all = !first && !second;
+  const size_t memory = sz(policy_->view().state_dim());
   for (size_t i = 0; i < sz(num_envs_); ++i) {
     if (!all && !(first && first[i]) && !(second && second[i])) continue;
     left_[i] = 0;
     fresh_[i] = 1;
+    std::fill_n(state_ + i * memory, memory, 0.0f);
   }
 }
 
 // Rows of the worlds that are due, one after the other.
 void Actor::gather(const float* obs, const PointRows& clouds) {
   const PolicyView& v = policy_->view();
-  const size_t dim = sz(v.obs_dim()), cloud = sz(v.eyes.points);
+  const size_t dim = sz(v.obs_dim()), cloud = sz(v.eyes.points), memory = sz(v.state_dim());
   for (size_t k = 0; k < sz(num_due_); ++k) {
     const size_t i = sz(due_[k]);
     need_finite_row(obs + i * dim, dim, "obs", i);
     std::copy_n(obs + i * dim, dim, obs_ + k * dim);
+    std::copy_n(state_ + i * memory, memory, due_state_ + k * memory);
     if (!v.eyes.points) continue;
     need_finite_row(clouds.metres + 3 * cloud * i, 3 * cloud, "points", i);
     std::copy_n(clouds.metres + 3 * cloud * i, 3 * cloud, points_ + 3 * cloud * k);
@@ -152,7 +157,7 @@ void Actor::draw_noise() {
 // All that can fail comes before what is kept changes.
 void Actor::decide() {
   const PolicyView& v = policy_->view();
-  const size_t width = sz(v.action_dim());
+  const size_t width = sz(v.action_dim()), memory = sz(v.state_dim());
   PointRows clouds;
   if (v.eyes.points) {
     clouds.metres = points_;
@@ -161,7 +166,7 @@ void Actor::decide() {
     need_channels(v.eyes, clouds, sz(num_due_));
   }
   if (stochastic_) draw_noise();
-  policy_->act(obs_, num_due_, stochastic_ ? noise_ : nullptr, action_, scratch_, clouds);
+  policy_->act(obs_, num_due_, stochastic_ ? noise_ : nullptr, action_, scratch_, clouds, due_state_);
   for (size_t k = 0; k < sz(num_due_); ++k)
     need_finite_row(action_ + k * width, width, "action: the network overflows on these observations",
                     sz(due_[k]));
@@ -170,6 +175,7 @@ void Actor::decide() {
     const size_t i = sz(due_[k]);
     for (size_t j = 0; j < width; ++j) held_[i * width + j] = action_[k * width + j] - center_[j];
     if (stochastic_) std::copy_n(noise_ + k * width, width, memory_ + i * width);
+    std::copy_n(due_state_ + k * memory, memory, state_ + i * memory);
     left_[i] = hold_;
     fresh_[i] = 0;
   }
@@ -196,7 +202,9 @@ void Actor::act(const float* obs, const PointRows& clouds, const uint8_t* mask, 
 uint64_t Actor::fingerprint() const {
   const PolicyView& v = policy_->view();
   const int32_t sizes[] = {num_envs_, v.obs_dim(), v.action_dim(), v.action_repeat, hold_, stochastic_};
-  return hash_bytes(&v.layout_hash, sizeof v.layout_hash, hash_bytes(sizes, sizeof sizes));
+  const uint64_t plain = hash_bytes(&v.layout_hash, sizeof v.layout_hash, hash_bytes(sizes, sizeof sizes));
+  const int32_t memory[] = {v.gru.units, v.history, v.history_width};
+  return v.state_dim() ? hash_bytes(memory, sizeof memory, plain) : plain;
 }
 
 void Actor::write_state(Writer& out) const {
@@ -211,12 +219,14 @@ void Actor::write_state(Writer& out) const {
   out.bytes(fresh_, n);
   out.bytes(held_, rows * sizeof *held_);
   if (stochastic_) out.bytes(memory_, rows * sizeof *memory_);
+  out.bytes(state_, n * sz(policy_->view().state_dim()) * sizeof *state_);
   out.end_section();
   out.end_file();
 }
 
 void Actor::read_state(const void* bytes, size_t size) {
   const size_t n = sz(num_envs_), rows = n * sz(policy_->view().action_dim());
+  const size_t remembered = n * sz(policy_->view().state_dim());
   Reader in(bytes, size, "actor state");
   in.begin_file(kMagic, kVersion);
   in.need_section("HEAD");
@@ -234,6 +244,7 @@ void Actor::read_state(const void* bytes, size_t size) {
   for (size_t i = 0; i < n; ++i) good &= look.value<uint8_t>() <= 1;
   for (size_t i = 0; i < rows; ++i) good &= std::abs(look.value<float>()) <= 2;  // about a center
   for (size_t i = 0; stochastic_ && i < rows; ++i) good &= std::isfinite(look.value<float>());
+  for (size_t i = 0; i < remembered; ++i) good &= std::isfinite(look.value<float>());
   look.expect_end();
   if (!good) fail(Code::kFormat, "actor state: a number is out of range");
   stream_ = stream;
@@ -241,6 +252,7 @@ void Actor::read_state(const void* bytes, size_t size) {
   in.bytes(fresh_, n);
   in.bytes(held_, rows * sizeof *held_);
   if (stochastic_) in.bytes(memory_, rows * sizeof *memory_);
+  in.bytes(state_, remembered * sizeof *state_);
 }
 
 }  // namespace rdm

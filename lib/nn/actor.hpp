@@ -3,7 +3,7 @@
 // One step of the worlds is `repeat` control steps, so a decision lasts hold = action_repeat / repeat steps.
 // A decision that is sampled takes its noise from one stream, in the order of the worlds that are due: z of
 // each entry is AR(1) from one decision to the next, z' = rho z + sqrt(1 - rho^2) n, and n at an episode's
-// first. Serialised form (base/bytes.hpp): magic "RDMACTOR".
+// first. What a policy with a memory remembers of a world begins anew with its episode. Serialised form (base/bytes.hpp): magic "RDMACTOR".
 #pragma once
 #include "nn/policy.hpp"
 
@@ -58,10 +58,11 @@ class Actor {
   float* held_ = nullptr;            // [num_envs][action_dim] action as it is given
   float* memory_ = nullptr;          // [num_envs][action_dim] noise of the last decision
   float* center_ = nullptr;          // [action_dim]
+  float* state_ = nullptr;  // [num_envs][state_dim] what the policy remembers; zeros where it is fresh
   // of the worlds that decide now, one after the other
   int32_t* due_ = nullptr;
   int32_t num_due_ = 0;
-  float *obs_ = nullptr, *action_ = nullptr, *noise_ = nullptr, *points_ = nullptr;
+  float *obs_ = nullptr, *action_ = nullptr, *noise_ = nullptr, *points_ = nullptr, *due_state_ = nullptr;
   uint8_t *classes_ = nullptr, *colors_ = nullptr;
   unsigned char* scratch_ = nullptr;
 };

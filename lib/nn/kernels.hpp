@@ -87,6 +87,14 @@ struct Kernels {
                        const float* w, float* dw, float* dh);
   // y[j] += v[j] . h[slot[j]], likewise.
   void (*dot_slots)(const int32_t* slot, int32_t n, int32_t k, const float* h, const float* v, float* y);
+  // A step of a GRU (nn/gru.hpp). state_part, gates [rows][3 n] in the order r, z, n, before and h [rows][n].
+  // gates: what the input gives, which becomes the gates' values.
+  void (*gru_gates)(const float* state_part, const float* before, int32_t rows, int32_t n, float* gates,
+                    float* h);
+  // Its derivatives: carry comes as d(loss)/dh of the steps behind, to which dh is added, and leaves as what flows
+  // past the products to the state before. gates and state_part become d(loss) by what input and state give.
+  void (*gru_slopes)(const float* before, const float* dh, int32_t rows, int32_t n, float* gates,
+                     float* state_part, float* carry);
   // Elementwise, y may be x: for tests of their accuracy.
   void (*map_tanh)(const float* x, size_t n, float* y);
   void (*map_elu)(const float* x, size_t n, float* y);

@@ -79,18 +79,59 @@ void dot_slots(const int32_t* slot, int32_t n, int32_t k, const float* h, const 
   }
 }
 
+inline V sigmoid_of(V x) {
+  return fma(all(0.5f), tanh_of(all(0.5f) * x), all(0.5f));
+}
+
+void gru_gates(const float* state_part, const float* before, int32_t rows, int32_t n, float* gates,
+               float* h) {
+  for (int32_t row = 0; row < rows; ++row, state_part += 3 * n, before += n, gates += 3 * n, h += n)
+    by_lanes(n, [&](size_t j, int32_t count) {
+      const size_t jz = j + at(n), jn = jz + at(n);
+      const V r = sigmoid_of(get(gates + j, count) + get(state_part + j, count));
+      const V z = sigmoid_of(get(gates + jz, count) + get(state_part + jz, count));
+      const V c = tanh_of(fma(r, get(state_part + jn, count), get(gates + jn, count)));
+      put(gates + j, r, count);
+      put(gates + jz, z, count);
+      put(gates + jn, c, count);
+      put(h + j, fma(z, get(before + j, count) - c, c), count);
+    });
+}
+
+void gru_slopes(const float* before, const float* dh, int32_t rows, int32_t n, float* gates,
+                float* state_part, float* carry) {
+  const V one = all(1.0f);
+  for (int32_t row = 0; row < rows;
+       ++row, before += n, dh += n, gates += 3 * n, state_part += 3 * n, carry += n)
+    by_lanes(n, [&](size_t j, int32_t count) {
+      const size_t jz = j + at(n), jn = jz + at(n);
+      const V d = get(dh + j, count) + get(carry + j, count);
+      const V r = get(gates + j, count), z = get(gates + jz, count), c = get(gates + jn, count);
+      const V dc = d * (one - z) * fma(-c, c, one);
+      const V dz = d * (get(before + j, count) - c) * z * (one - z);
+      const V dr = dc * get(state_part + jn, count) * r * (one - r);
+      put(gates + j, dr, count);
+      put(gates + jz, dz, count);
+      put(gates + jn, dc, count);
+      put(state_part + j, dr, count);
+      put(state_part + jz, dz, count);
+      put(state_part + jn, dc * r, count);
+      put(carry + j, d * z, count);
+    });
+}
+
 // Of a build that acts and does not learn, what only learners call is left out.
 #ifndef RDM_LEARNS
 #define RDM_LEARNS 1
 #endif
 #define RDM_TO_LEARN(kernel) (RDM_LEARNS ? (kernel) : nullptr)
-#define RDM_KERNEL_TABLE                                                                        \
-  {                                                                                             \
-    kIsa, gemm, RDM_TO_LEARN(column_sums), RDM_TO_LEARN(adam), RDM_TO_LEARN(sum_squares),       \
-        RDM_TO_LEARN(column_moments), normalize, add_noise, RDM_TO_LEARN(log_prob),             \
-        RDM_TO_LEARN(log_prob_grad), RDM_TO_LEARN(kl), max_rows, activate, RDM_TO_LEARN(slope), \
-        RDM_TO_LEARN(spread_slots), RDM_TO_LEARN(dot_slots), RDM_TO_LEARN(map<tanh_of>),        \
-        RDM_TO_LEARN(map<elu_of>), RDM_TO_LEARN(map<exp_of>)                                    \
+#define RDM_KERNEL_TABLE                                                                          \
+  {                                                                                               \
+    kIsa, gemm, RDM_TO_LEARN(column_sums), RDM_TO_LEARN(adam), RDM_TO_LEARN(sum_squares),         \
+        RDM_TO_LEARN(column_moments), normalize, add_noise, RDM_TO_LEARN(log_prob),               \
+        RDM_TO_LEARN(log_prob_grad), RDM_TO_LEARN(kl), max_rows, activate, RDM_TO_LEARN(slope),   \
+        RDM_TO_LEARN(spread_slots), RDM_TO_LEARN(dot_slots), gru_gates, RDM_TO_LEARN(gru_slopes), \
+        RDM_TO_LEARN(map<tanh_of>), RDM_TO_LEARN(map<elu_of>), RDM_TO_LEARN(map<exp_of>)          \
   }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "base/error.hpp"
@@ -14,6 +15,8 @@ namespace {
 
 constexpr const char* kWhat = "policy file";
 constexpr int32_t kChunk = 128;  // rows at a time: bounds the scratch
+constexpr int32_t kExampleDecisions =
+    3;  // of a policy with a memory, on the same row: of the last is the action
 constexpr float kExampleTolerance = 1e-4f;
 constexpr double kMaxSum = 1e18;  // of an encoder: a float still holds its square
 
@@ -47,9 +50,10 @@ const unsigned char* view_floats(Reader& in, size_t n) {
 // What act needs per chunk of rows; nothing of the backward pass.
 struct ActScratch {
   MlpScratch mlp;
+  RecurrentScratch memory;
   PointNetScratch eyes;
   float* obs = nullptr;                    // what the network sees: normalised, with features
-  float* row = nullptr;                    // with features: entries before they stand beside these
+  float* row = nullptr;                    // with features or a history: entries before they stand beside these
   float* head = nullptr;                   // the network's outputs, with state_std
   float *seen = nullptr, *part = nullptr;  // of one group: what it sees and gives
   size_t bytes = 0;
@@ -67,11 +71,10 @@ ActScratch cut_act_scratch(const PolicyView& v, int32_t rows, void* memory) {
     largest.out = std::max(largest.out, v.group[g].shape.out);
   }
   s.mlp = cut_forward_scratch(cutter, largest, rows);
+  s.memory = cut_recurrent_scratch(cutter, v.net(), rows);
   s.obs = cutter.make(sz(rows) * sz(shape.in));
-  if (v.eyes.points) {
-    s.eyes = cut_pointnet_scratch(cutter, v.eyes);
-    s.row = cutter.make(sz(rows) * sz(v.entries()));
-  }
+  if (v.eyes.points) s.eyes = cut_pointnet_scratch(cutter, v.eyes);
+  if (v.eyes.points || v.history > 1) s.row = cutter.make(sz(rows) * sz(v.entries()));
   s.head = cutter.make(v.state_std ? sz(rows) * sz(shape.out) : 0);
   if (v.num_groups) {
     s.seen = cutter.make(sz(rows) * sz(largest.in));
@@ -105,8 +108,17 @@ void act_outputs(const PolicyView& v, float* y, int32_t rows, const float* noise
   }
 }
 
+// Puts the history of rows behind their entries x in what the network sees, and then x into the history.
+void remember(const PolicyView& v, const float* x, int32_t rows, float* state, float* seen) {
+  const size_t width = sz(v.history_inputs());
+  for (size_t i = 0; i < sz(rows); ++i, state += width, x += v.entries(), seen += v.actor.in) {
+    std::copy_n(state, width, seen + v.entries());
+    push_history(state, v.history - 1, v.history_width, x, v.history_entries);
+  }
+}
+
 void act_view(const PolicyView& v, const float* obs, const PointRows& clouds, int32_t rows,
-              const float* noise, const ActOut& out, void* scratch) {
+              const float* noise, const ActOut& out, void* scratch, float* state) {
   const Kernels& kernel = kernels();
   const ActScratch s = cut_act_scratch(v, rows, scratch);
   const size_t in = sz(v.obs_dim()), dim = sz(v.action_dim());
@@ -127,8 +139,10 @@ void act_view(const PolicyView& v, const float* obs, const PointRows& clouds, in
     if (s.row) {
       for (size_t i = 0; i < sz(n); ++i)
         std::copy_n(x + i * sz(v.entries()), v.entries(), s.obs + i * sz(v.actor.in));
-      pointnet_forward(v.eyes, v.eyes_params, clouds.from(v.eyes, sz(at)), n, s.eyes, s.obs + v.entries(),
-                       sz(v.actor.in), nullptr);
+      if (v.history > 1) remember(v, x, n, state + sz(at) * sz(v.state_dim()), s.obs);
+      if (v.eyes.points)
+        pointnet_forward(v.eyes, v.eyes_params, clouds.from(v.eyes, sz(at)), n, s.eyes, s.obs + v.entries(),
+                         sz(v.actor.in), nullptr);
       x = s.obs;
     }
     for (int32_t i = 0; i < v.num_groups; ++i) {
@@ -137,7 +151,13 @@ void act_view(const PolicyView& v, const float* obs, const PointRows& clouds, in
       mlp_forward(g.shape, v.params + g.offset, g.columns ? s.seen : x, n, s.mlp, s.part);
       spread_outputs(g, s.part, n, sz(v.actor.out), y);
     }
-    if (!v.num_groups) mlp_forward(v.actor, v.params, x, n, s.mlp, y);
+    if (v.gru.units) {
+      float* const h = state + sz(at) * sz(v.gru.units);
+      recurrent_forward(v.net(), v.params, x, 1, n, h, nullptr, s.mlp, s.memory, y);
+      std::copy_n(s.memory.h, sz(n) * sz(v.gru.units), h);
+    } else if (!v.num_groups) {
+      mlp_forward(v.actor, v.params, x, n, s.mlp, y);
+    }
     act_outputs(v, y, n, noise ? noise + sz(at) * dim : nullptr, to);
   }
 }
@@ -185,6 +205,15 @@ void read_head(Reader& in, PolicyView& v) {
   if (v.actor.out % 2 != 0) bad("the network's outputs are not means and deviations");
   if (!(v.std_bounds[0] <= v.std_bounds[1] && v.std_bounds[0] >= -50 && v.std_bounds[1] <= 50))
     bad("the deviation's bounds are out of range");
+}
+
+void write_memory(Writer& out, const PolicyView& v) {
+  out.begin_section("MEMO");
+  out.value(v.gru.units);
+  out.value(v.history);
+  out.value(v.history_width);
+  for (int32_t i = 0; i < v.history_width; ++i) out.value(v.history_entries ? v.history_entries[i] : i);
+  out.end_section();
 }
 
 void write_eyes(Writer& out, const PolicyView& v) {
@@ -325,6 +354,7 @@ struct PolicyParts {
   // Of each field offset and count, then names and units with their terminators.
   const unsigned char *field_entries = nullptr, *field_texts = nullptr;
   size_t field_bytes = 0;  // of the texts
+  const unsigned char* history_entries = nullptr;
   const unsigned char *params = nullptr, *eyes = nullptr, *log_std = nullptr, *shift = nullptr,
                       *scale = nullptr;
   const unsigned char *obs = nullptr, *action = nullptr, *points = nullptr, *classes = nullptr,
@@ -430,15 +460,39 @@ void read_groups(Reader& in, PolicyParts& parts) {
   if (actions != v.action_dim()) bad("its groups do not share the action out");
 }
 
+void read_memory(Reader& in, PolicyParts& parts) {
+  PolicyView& v = parts.v;
+  in.need_section("MEMO");
+  const auto units = in.value<int32_t>();
+  v.history = in.value<int32_t>();
+  v.history_width = in.value<int32_t>();
+  if (units < 0 || units > kMaxUnits) bad("the number of units of its memory is out of range");
+  if (v.history < 1 || v.history > kMaxHistory) bad("the length of its history is out of range");
+  if ((v.history == 1) != (v.history_width == 0) || v.history_width < 0 ||
+      int64_t{v.history - 1} * v.history_width >= v.actor.in || v.history_width > v.entries())
+    bad("the entries of its history are out of range");
+  if (units == 0 && v.history == 1) bad("its memory is empty");
+  v.gru = with_gru(v.actor, units).gru;
+  parts.history_entries = in.view(sz(v.history_width) * sizeof(int32_t));
+  in.expect_end();
+  for (int32_t i = 0, last = -1; i < v.history_width; ++i) {
+    int32_t entry;
+    std::memcpy(&entry, parts.history_entries + sz(i) * sizeof entry, sizeof entry);
+    if (entry <= last || entry >= v.entries()) bad("the entries of its history are not valid");
+    last = entry;
+  }
+}
+
 void read_parts(const void* bytes, size_t size, PolicyParts& parts) {
   PolicyView& v = parts.v;
   Reader in(bytes, size, kWhat);
   const uint32_t version = in.begin_file(kPolicyMagic, kPolicyVersion);
-  in.need_whole_tags("METAARCHHEADEYESCOLSGRPSWGTSNORMEXMP");
+  in.need_whole_tags("METAARCHHEADEYESMEMOCOLSGRPSWGTSNORMEXMP");
   read_meta(in, v);
   read_arch(in, v.actor);
   if (version > 1) read_head(in, v);
   if (version == 4 || version == 5) read_eyes(in, v, version == 5);
+  if (version == 7) read_memory(in, parts);
   v.row_dim = v.entries();
   if (version == 3 || (version > 3 && in.find_section("COLS"))) read_columns(in, parts);
   if (version == 6) {
@@ -521,6 +575,7 @@ const ObsField* keep_fields(Arena& arena, const PolicyParts& parts) {
 struct Kept {
   PolicyView v;
   float* action = nullptr;
+  float* state = nullptr;
   unsigned char* scratch = nullptr;
 };
 Kept keep_parts(Arena& arena, const PolicyParts& parts) {
@@ -530,6 +585,7 @@ Kept keep_parts(Arena& arena, const PolicyParts& parts) {
   v.columns = keep_columns(arena, parts.ranges, parts.num_ranges, v.entries());
   v.fields = keep_fields(arena, parts);
   v.params = keep<float>(arena, parts.params, v.num_params());
+  v.history_entries = keep<int32_t>(arena, parts.history_entries, sz(v.history_width));
   v.eyes_params = keep<float>(arena, parts.eyes, v.eyes.num_params());
   v.example_points = keep<int16_t>(arena, parts.points, v.eyes.row_points());
   v.example_classes = keep<uint8_t>(arena, parts.classes, v.eyes.classes ? sz(v.eyes.points) : 0);
@@ -540,9 +596,18 @@ Kept keep_parts(Arena& arena, const PolicyParts& parts) {
   v.example_obs = keep<float>(arena, parts.obs, sz(v.row_dim));
   v.example_action = keep<float>(arena, parts.action, n_out);
   kept.action = arena.make<float>(n_out);
+  kept.state = arena.make<float>(sz(v.state_dim()));
   kept.scratch = arena.make<unsigned char>(cut_act_scratch(parts.v, 1, nullptr).bytes);
   v.group = keep_groups(arena, parts);
   return kept;
+}
+
+// The mean action for the example; state [state_dim].
+void act_example(const PolicyView& v, const float* obs, const PointRows& cloud, float* action, void* scratch,
+                 float* state) {
+  std::fill_n(state, v.state_dim(), 0.0f);
+  for (int32_t i = v.state_dim() ? kExampleDecisions : 1; i > 0; --i)
+    act_view(v, obs, cloud, 1, nullptr, {action}, scratch, state);
 }
 
 // A NaN of one point would be hidden by the maximum over points, so the encoder's sums are bounded instead.
@@ -554,8 +619,8 @@ bool sums_stay_finite(const PointNetShape& eyes, const float* params) {
 void try_example(const Kept& kept) {
   const PolicyView& v = kept.v;
   if (!sums_stay_finite(v.eyes, v.eyes_params)) bad("the encoder's sums may be too large");
-  act_view(v, v.example_obs, {v.example_points, nullptr, v.example_classes, v.example_colors}, 1, nullptr,
-           {kept.action}, kept.scratch);
+  act_example(v, v.example_obs, {v.example_points, nullptr, v.example_classes, v.example_colors}, kept.action,
+              kept.scratch, kept.state);
   for (size_t j = 0; j < sz(v.action_dim()); ++j)
     if (!(std::abs(kept.action[j] - clip_unit(v.example_action[j])) <= kExampleTolerance))
       bad("the network does not reproduce the example action that is stored with it");
@@ -584,9 +649,11 @@ void write_policy(Writer& out, const PolicyView& view) {
     std::copy_n(view.example_action, n_out, action.begin());
   } else {
     Vector<float> memory(cut_act_scratch(view, 1, nullptr).bytes / sizeof(float) + Arena::kAlign);
-    act_view(view, obs.data(), cloud, 1, nullptr, {action.data()}, align_scratch(memory.data()));
+    Vector<float> state(sz(view.state_dim()));
+    act_example(view, obs.data(), cloud, action.data(), align_scratch(memory.data()), state.data());
   }
-  out.begin_file(kPolicyMagic, view.num_groups  ? 6
+  out.begin_file(kPolicyMagic, view.state_dim() ? 7
+                               : view.num_groups  ? 6
                                : eyes.points    ? (eyes.color ? 5 : 4)
                                : view.columns   ? 3
                                : view.state_std ? 2
@@ -613,6 +680,7 @@ void write_policy(Writer& out, const PolicyView& view) {
     out.end_section();
   }
   if (eyes.points) write_eyes(out, view);
+  if (view.state_dim()) write_memory(out, view);
   if (view.columns) write_columns(out, view);
   if (view.num_groups) write_groups(out, view);
   if (view.num_fields > 0) write_fields(out, view);
@@ -684,6 +752,7 @@ Policy* Policy::read(const void* bytes, size_t size, const HostHooks& hooks) {
   p->arena_ = std::move(arena);
   p->view_ = kept.v;
   p->scratch_ = kept.scratch;
+  p->state_ = kept.state;
   return p;
 }
 
@@ -726,8 +795,8 @@ void Policy::update(const PolicyView& from) {
   v.generation = from.generation;
   v.usual = from.usual;
   std::memcpy(v.task, from.task, sizeof v.task);
-  act_view(v, v.example_obs, {v.example_points, nullptr, v.example_classes, v.example_colors}, 1, nullptr,
-           {const_cast<float*>(v.example_action)}, scratch_);
+  act_example(v, v.example_obs, {v.example_points, nullptr, v.example_classes, v.example_colors},
+              const_cast<float*>(v.example_action), scratch_, state_);
 }
 
 void Policy::novelty(const float* obs, int32_t rows, float* novelty) const {
@@ -741,13 +810,19 @@ size_t Policy::scratch_bytes(int32_t rows) const {
 }
 
 void Policy::act(const float* obs, int32_t rows, const float* noise, float* action, void* scratch,
-                 const PointRows& clouds) const {
-  act_view(view_, obs, clouds, rows, noise, {action}, scratch);
+                 const PointRows& clouds, float* state) const {
+  act_view(view_, obs, clouds, rows, noise, {action}, scratch, state);
 }
 
 void Policy::sample(const float* obs, int32_t rows, const float* noise, float* action, float* mean,
-                    void* scratch) const {
-  act_view(view_, obs, {}, rows, noise, {action, mean, std::numeric_limits<float>::infinity()}, scratch);
+                    void* scratch, float* state) const {
+  act_view(view_, obs, {}, rows, noise, {action, mean, std::numeric_limits<float>::infinity()}, scratch,
+           state);
+}
+
+void push_history(float* state, int32_t depth, int32_t width, const float* seen, const int32_t* listed) {
+  std::memmove(state + width, state, sz(depth - 1) * sz(width) * sizeof *state);
+  for (size_t i = 0; i < sz(width); ++i) state[i] = seen[listed ? sz(listed[i]) : i];
 }
 
 }  // namespace rdm

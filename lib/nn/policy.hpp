@@ -1,8 +1,8 @@
 // The frozen policy: normaliser, actor network, action scale; runs on a machine that has nothing else.
 // Serialised form: the policy.rdm file (base/bytes.hpp), magic "RDMPOLIC". Version 2 is written for a policy
 // whose deviation depends on the state, version 3 for one that sees a part of the observation alone, version
-// 4 for one that sees points, version 5 for one that sees their colours, version 6 for one in groups: versions
-// before do not know these.
+// 4 for one that sees points, version 5 for one that sees their colours, version 6 for one in groups, version 7 for one
+// that has a memory: versions before do not know these.
 // Sections FLDS, the names of fields, GENR, the generation, and SEEN, what is usual in a row, came later and
 // are in files of each version: a reader finds sections by their tags, and passes over others.
 #pragma once
@@ -11,6 +11,7 @@
 #include "base/bytes.hpp"
 #include "base/file.hpp"
 #include "nn/actor_group.hpp"
+#include "nn/gru.hpp"
 #include "nn/novelty.hpp"
 #include "nn/obs_field.hpp"
 #include "nn/pointnet.hpp"
@@ -18,7 +19,8 @@
 namespace rdm {
 
 inline constexpr char kPolicyMagic[8] = {'R', 'D', 'M', 'P', 'O', 'L', 'I', 'C'};
-inline constexpr uint32_t kPolicyVersion = 6;
+inline constexpr uint32_t kPolicyVersion = 7;
+inline constexpr int32_t kMaxHistory = 1024;
 
 // Everything that a policy file holds, as views of memory that somebody else owns.
 struct PolicyView {
@@ -28,6 +30,13 @@ struct PolicyView {
   // entry of the row, and params are theirs, one behind the other. None: it is one network.
   const ActorGroup* group = nullptr;   // [num_groups]
   int32_t num_groups = 0;              // 0, or 2 to kMaxGroups
+  // What it remembers, of a row of a batch, is its state, state_dim() numbers, zeros at first: the state of the GRU
+  // before its last layer, or the history entries of its last `history` - 1 decisions as the network saw them,
+  // newest first, which stand behind the entries of the row.
+  GruShape gru;                              // units 0: none
+  int32_t history = 1;                       // decisions that it sees, this one included
+  const int32_t* history_entries = nullptr;  // [history_width] of entries(), ascending; null: all
+  int32_t history_width = 0;
   PointNetShape eyes;                  // points 0: none; their features are the actor's last inputs
   const float* eyes_params = nullptr;  // [eyes.num_params()]
   const int32_t* columns = nullptr;    // [entries()] entries of the row, ascending; null: all of them
@@ -55,8 +64,12 @@ struct PolicyView {
   const uint8_t* example_classes = nullptr;  // [eyes.points]
   const uint8_t* example_colors = nullptr;   // [eyes.points][3]
 
-  int32_t entries() const { return actor.in - eyes.features(); }  // of a row, that it sees
-  size_t num_params() const { return num_groups ? group_params(group, num_groups) : actor.num_params(); }
+  RecurrentShape net() const { return {actor, gru}; }
+  size_t num_params() const { return num_groups ? group_params(group, num_groups) : net().num_params(); }
+  int32_t history_inputs() const { return (history - 1) * history_width; }
+  int32_t state_dim() const { return gru.units + history_inputs(); }
+  // of a row, that it sees
+  int32_t entries() const { return actor.in - eyes.features() - history_inputs(); }
   int32_t obs_dim() const { return columns ? row_dim : entries(); }
   int32_t action_dim() const { return state_std ? actor.out / 2 : actor.out; }
 };
@@ -64,6 +77,10 @@ void write_policy(Writer& out, const PolicyView& view);
 // Writes group i of a policy alone, as a policy of its own: of the entries that it sees, with its actions. How usual a
 // row is is not known of it.
 void write_group(Writer& out, const PolicyView& view, int32_t i);
+
+// A decision more in a history: seen [entries] of which the listed ones (null: the first `width`) become the newest of
+// state [depth][width].
+void push_history(float* state, int32_t depth, int32_t width, const float* seen, const int32_t* listed);
 
 // An owned, immutable policy. act is const and uses only the caller's scratch.
 class Policy {
@@ -81,12 +98,13 @@ class Policy {
   size_t scratch_bytes(int32_t rows) const;
   // action [rows][action_dim] = clip(mean + std * noise, -1, 1); noise, as action, standard normals or null
   // for the mean. scratch: scratch_bytes(rows) bytes, 64-byte aligned.
-  // clouds [rows]: of a policy that sees points.
+  // clouds [rows]: of a policy that sees points. state [rows][state_dim()] is what it remembers of the decisions
+  // before, and becomes what it remembers of this one too.
   void act(const float* obs, int32_t rows, const float* noise, float* action, void* scratch,
-           const PointRows& clouds = {}) const;
+           const PointRows& clouds = {}, float* state = nullptr) const;
   // The same without the clip, of one that sees no points; the mean too. One of the two may be null.
-  void sample(const float* obs, int32_t rows, const float* noise, float* action, float* mean,
-              void* scratch) const;
+  void sample(const float* obs, int32_t rows, const float* noise, float* action, float* mean, void* scratch,
+              float* state = nullptr) const;
 
   // novelty [rows] of obs; view().usual must be known.
   void novelty(const float* obs, int32_t rows, float* novelty) const;
@@ -100,6 +118,7 @@ class Policy {
   Arena arena_;
   PolicyView view_;
   unsigned char* scratch_ = nullptr;  // for one row: of the example
+  float* state_ = nullptr;            // [state_dim()] likewise
 };
 
 }  // namespace rdm

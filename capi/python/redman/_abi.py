@@ -857,6 +857,7 @@ class PolicyInfo(Record):
     novelty: whether Policy.novelty is available: 0, 1
     generation: which network it is: the low 32 bits are the epochs that its agent had learned, the high ones a
         checksum. Data sampled by another generation are stale. 0: unknown
+    state_dim: numbers that it remembers of each world, for rdm_policy_act_state; 0: it has no memory
     """
 
     obs_dim: int
@@ -875,6 +876,7 @@ class PolicyInfo(Record):
     num_fields: int
     novelty: int
     generation: int
+    state_dim: int
 
 
 class rdm_policy_info(Structure):
@@ -898,6 +900,8 @@ class rdm_policy_info(Structure):
     novelty: whether rdm_policy_novelty is available: 0, 1
     generation: which network it is: the low 32 bits are the epochs that its agent had learned, the high ones a
         checksum. Data sampled by another generation are stale. 0: unknown
+    state_dim: numbers that it remembers of each world, for rdm_policy_act_state; 0: it has no memory
+    reserved2: 0
     """
 
     struct_size: int
@@ -917,6 +921,8 @@ class rdm_policy_info(Structure):
     num_fields: int
     novelty: int
     generation: int
+    state_dim: int
+    reserved2: int
     _fields_ = [
         ("struct_size", c_uint32),
         ("obs_dim", c_int32),
@@ -935,6 +941,8 @@ class rdm_policy_info(Structure):
         ("num_fields", c_int32),
         ("novelty", c_int32),
         ("generation", c_uint64),
+        ("state_dim", c_int32),
+        ("reserved2", c_int32),
     ]
 
 
@@ -4560,7 +4568,7 @@ FUNCTIONS: dict[str, Function] = {
         [scratch_bytes]: rdm_policy_scratch bytes or more, of any alignment. No heap, no hidden state:
         any number of threads, each with its own scratch. ARGUMENT when obs or noise is not finite, or so
         large that the network overflows (action is written then, but meaningless). STATE for a policy
-        that reads points.
+        that reads points or has a memory.
         """),
     "rdm_policy_sample": Function(
         c_int32, {"p": c_void_p, "obs": c_void_p, "rows": c_int32, "noise": c_void_p, "action": c_void_p, "mean": c_void_p, "scratch": c_void_p, "scratch_bytes": c_size_t},
@@ -4598,7 +4606,10 @@ FUNCTIONS: dict[str, Function] = {
         In a policy that reads points, "actor.0.weight" has further columns for the features, and there
         are "encoder.0.weight" and so on, "encoder.origin" and "encoder.range", in m,
         "encoder.activation" (0 tanh, 1 elu, 2 relu), "example.points", in m, and
-        "example.point_class".
+        "example.point_class". In a policy with a GRU there are "memory.input.weight" and ".bias" and
+        "memory.state.weight" and ".bias", rows of the gates r, z and n; the GRU stands before the last
+        layer. In one with a history "actor.0.weight" has further columns, for its state, and there is
+        "history.columns", which entries of a row it keeps of each decision.
         """),
     "rdm_policy_get_tensor": Function(
         c_int32, {"p": c_void_p, "name": c_char_p, "out": c_void_p, "count": c_size_t},
@@ -5615,6 +5626,23 @@ FUNCTIONS: dict[str, Function] = {
         With each of them, shield_penalty is subtracted from the reward of refused decisions. To resume a
         run with the same bytes, save the state of the shield too, which holds its plans. STATE inside a
         horizon.
+        """),
+    "rdm_policy_act_state": Function(
+        c_int32, {"p": c_void_p, "obs": c_void_p, "state": c_void_p, "rows": c_int32, "noise": c_void_p, "action": c_void_p, "scratch": c_void_p, "scratch_bytes": c_size_t},
+        {"state": Rows("float32", ("rows", "state_dim"))}, True,
+        """As rdm_policy_act, for any policy that reads no points: state [rows][state_dim] is read, and
+        becomes that after the decision; NULL only where state_dim is 0. ARGUMENT for a state that is not
+        finite; the state stays as it is on errors, except where the network overflows.
+        """),
+    "rdm_agent_forget": Function(
+        c_int32, {"a": c_void_p, "mode": c_int32, "mask": c_void_p},
+        {"mask": Rows("uint8", ("num_envs",))}, True,
+        """The memory of worlds begins anew where mask [num_envs] is not 0 (NULL: in all). mode: of which
+        memory, RDM_ACT_SAMPLE or RDM_ACT_MEAN. The two are apart, so that evaluating by RDM_ACT_MEAN
+        does not disturb what is collected. The memory of RDM_ACT_SAMPLE begins anew by itself where
+        rdm_agent_record or rdm_agent_put reports an end, and in a row with valid 0 that only resets; that
+        of RDM_ACT_MEAN does so here alone. An agent without a memory has nothing to forget. STATE while
+        sampled actions wait for their record, if it is their memory, or while an update is under way.
         """),
     "rdm_recording_config_init": Function(
         c_int32, {"c": POINTER(rdm_recording_config), "size": c_size_t},

@@ -201,6 +201,22 @@ class Agent(Taught, Hinted):
             action[...] = target
         return action
 
+    def forget(self, mode: str = "sample", mask: Any = None) -> None:
+        """The memory of worlds begins anew where mask [num_envs] is true; None: in all.
+
+        The memory of sampled actions does so by itself where record reports an end; that of the mean (mode "mean") is apart
+        from it, so that evaluating disturbs nothing, and does so here alone.
+        """
+        if mode not in _MODES:
+            raise ArgumentError(f"mode: {mode!r} is none of {', '.join(_MODES)}")
+        chosen = None
+        if mask is not None:
+            chosen = np.ascontiguousarray(np.asarray(mask, bool), np.uint8)
+            if chosen.shape != (self.num_envs,):
+                raise ArgumentError(f"mask: shape {chosen.shape} does not fit ({self.num_envs},)")
+        with self._lock:
+            self._check(lib.rdm_agent_forget(self._a, _MODES[mode], None if chosen is None else chosen.ctypes.data))
+
     def record(self, reward: Any, cost: Any = None, terminated: Any = None, truncated: Any = None,
                final_obs: Any = None, valid: Any = None, success: Any = None, steps: Any = None) -> None:
         """Records what followed the last sampled actions, a row per world. None means: no ends, all rows are valid, no

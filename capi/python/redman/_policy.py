@@ -156,6 +156,11 @@ class Policy(Hinted):
     def __bytes__(self) -> bytes:
         return self._bytes
 
+    def start(self, rows: Optional[int] = None) -> FloatArray:
+        """What a policy with a memory remembers before the first decision of an episode: zeros [rows][state_dim], or
+        [state_dim] for one world."""
+        return np.zeros(self.info.state_dim if rows is None else (rows, self.info.state_dim), np.float32)
+
     @property
     def groups(self) -> tuple[str, ...]:
         """Names of the groups of a team's policy, in the order of the action; () for a policy of one network."""
@@ -178,14 +183,25 @@ class Policy(Hinted):
         return Policy(data.raw)
 
     def act(self, obs: Any, noise: Any = None, points: Any = None, point_class: Any = None,
-            point_color: Any = None) -> FloatArray:
+            point_color: Any = None, state: Any = None) -> Any:
         """One decision: clip(mean + std noise, -1, 1) for one observation [obs_dim] or rows [n][obs_dim]; noise None: the mean.
 
         Hold it for info.action_repeat control steps; in a pool or an environment, actor() does that.
         pool.step(policy.act(pool.obs)) at every step makes a different policy of it, and a HoldWarning says so. A policy
         that reads points needs them too [n][num_points][3], with num_point_classes their classes, and where it reads colours
         (point_color) these, as [n][num_points][3], 0 to 255.
+
+        A policy with a memory (info.state_dim > 0) takes its state too and returns the next one:
+        action, state = policy.act(obs, state), from policy.start(rows) on. With noise: policy.act(obs, noise, state=state).
         """
+        remembers = self.info.state_dim > 0
+        if remembers and state is None:
+            state, noise = noise, None
+        if remembers and state is None:
+            raise ArgumentError("state: this policy has a memory; action, state = policy.act(obs, state), from "
+                                "policy.start(rows) on, or use an actor")
+        if not remembers and state is not None and np.size(state):
+            raise ArgumentError("state: this policy has no memory")
         rows_of = _abi.FUNCTIONS["rdm_policy_act"].rows
         observed = np.asarray(obs)
         if observed.ndim not in (1, 2) or observed.shape[-1] != self.info.obs_dim:
@@ -199,17 +215,33 @@ class Policy(Hinted):
             drawn = None if noise is None else given(noise, rows_of["noise"], lengths, "noise")
             size, scratch = self._scratch(rows)
             noise_at = None if drawn is None else drawn.ctypes.data
-            if points is None:
+            if remembers:
+                kept = self._state(state, rows)
+                check(lib.rdm_policy_act_state(self._handle.value, seen.ctypes.data, kept.ctypes.data, rows, noise_at,
+                                               action.ctypes.data, scratch, size))
+            elif points is None:
                 check(lib.rdm_policy_act(self._handle.value, seen.ctypes.data, rows, noise_at, action.ctypes.data,
                                          scratch, size))
             else:
-                cloud, kept = clouds(points, point_class, point_color, rows)
+                cloud, held = clouds(points, point_class, point_color, rows)
                 check(lib.rdm_policy_act_points(self._handle.value, seen.ctypes.data, ctypes.byref(cloud), rows,
                                                 noise_at, action.ctypes.data, scratch, size))
-                del kept
-        return decided(action if observed.ndim == 2 else action.reshape(-1), self.info.action_repeat)
+                del held
+        done = decided(action if observed.ndim == 2 else action.reshape(-1), self.info.action_repeat)
+        if not remembers:
+            return done
+        if not rows:
+            kept = self.start(0)
+        return done, kept if observed.ndim == 2 else kept.reshape(-1)
 
     __call__ = act
+
+    def _state(self, state: Any, rows: int) -> FloatArray:
+        """A copy of a state, which the library changes."""
+        kept: FloatArray = np.array(state, np.float32, order="C")
+        if kept.size != rows * self.info.state_dim or kept.shape[-1] != self.info.state_dim:
+            raise ArgumentError(f"state: shape {kept.shape} does not fit ({rows}, {self.info.state_dim})")
+        return kept.reshape(rows, self.info.state_dim)
 
     def sample(self, obs: Any, noise: Any = None) -> tuple[FloatArray, FloatArray]:
         """(action, mean), both [n][action_dim] for rows [n][obs_dim], not clipped, as an agent samples: mean + std noise,
@@ -271,13 +303,15 @@ class Policy(Hinted):
                 self._told_no_state()
             left, action, noise, fresh = np.zeros(len(rows), int), np.zeros(shape, np.float32), np.zeros(
                 shape, np.float32), np.ones(len(rows), bool)
+            memory = self.start(len(rows))
         else:
-            left, action, noise, fresh = (part.copy() for part in state)
+            left, action, noise, fresh, *remembered = (part.copy() for part in state)
+            memory = remembered[0] if remembered else self.start(len(rows))
             if action.shape != shape:
                 raise ArgumentError(f"state: of {len(action)} rows, not {len(rows)}")
         if episode_start is not None:
             begun = np.broadcast_to(np.asarray(episode_start, bool), left.shape)
-            left[begun], fresh[begun] = 0, True
+            left[begun], fresh[begun], memory[begun] = 0, True, 0
         due = left == 0
         if due.any():
             drawn = None
@@ -286,11 +320,16 @@ class Policy(Hinted):
                 drawn = np.random.standard_normal(shape).astype(np.float32)
                 drawn = np.where(fresh[:, None], drawn, np.float32(rho) * noise + np.float32(np.sqrt(1 - rho * rho)) * drawn)
                 noise[due] = drawn[due]
-            action[due] = np.asarray(self.act(rows[due], None if drawn is None else drawn[due]))
+            noise_due = None if drawn is None else drawn[due]
+            if self.info.state_dim:
+                decision, memory[due] = self.act(rows[due], noise_due, state=memory[due])
+                action[due] = np.asarray(decision)
+            else:
+                action[due] = np.asarray(self.act(rows[due], noise_due))
             left[due], fresh[due] = self.info.action_repeat, False
         left -= 1
         given_back = action.copy() if observed.ndim == 2 else action[0].copy()
-        return given_back, (left, action, noise, fresh)
+        return given_back, (left, action, noise, fresh) + ((memory,) if self.info.state_dim else ())
 
     def _told_no_state(self) -> None:
         """Warns when a second call has no state: the loop that calls drops it."""

@@ -51,27 +51,34 @@ void quantise(Layer& layer) {
   }
 }
 
+// The tensors `from`.weight and .bias as a layer of so many rows.
+Layer layer_of(const Network& network, const std::string& from, const std::string& number, int32_t outputs,
+               bool int8) {
+  Layer layer;
+  layer.number = number;
+  const NamedTensor &w = *network.find(from + ".weight"), &b = *network.find(from + ".bias");
+  const auto rows = static_cast<size_t>(outputs);
+  layer.in = static_cast<size_t>(w.shape[1]);
+  layer.out = (rows + 3) / 4 * 4;
+  layer.weight.assign(layer.out * layer.in, 0);
+  layer.bias.assign(layer.out, 0);
+  for (size_t o = 0; o < rows; ++o) {
+    layer.bias[o] = plain(b.values[o]);
+    for (size_t k = 0; k < layer.in; ++k)
+      layer.weight[(o / 4 * layer.in + k) * 4 + o % 4] = plain(w.values[o * layer.in + k]);
+  }
+  if (int8) quantise(layer);
+  return layer;
+}
+
 // Layers of "actor" or "encoder", of the last one so many rows; `mark` begins their numbers.
 std::vector<Layer> layers_of(const Network& network, const std::string& of, const char* mark, int32_t count,
                              int32_t outputs, bool int8) {
   std::vector<Layer> layers;
   for (int32_t l = 0; l < count; ++l) {
-    Layer layer;
-    layer.number = mark + std::to_string(l);
-    const std::string from = of + '.' + std::to_string(l);
-    const NamedTensor &w = *network.find(from + ".weight"), &b = *network.find(from + ".bias");
-    const auto rows = static_cast<size_t>(l + 1 == count ? outputs : static_cast<int32_t>(w.shape[0]));
-    layer.in = static_cast<size_t>(w.shape[1]);
-    layer.out = (rows + 3) / 4 * 4;
-    layer.weight.assign(layer.out * layer.in, 0);
-    layer.bias.assign(layer.out, 0);
-    for (size_t o = 0; o < rows; ++o) {
-      layer.bias[o] = plain(b.values[o]);
-      for (size_t k = 0; k < layer.in; ++k)
-        layer.weight[(o / 4 * layer.in + k) * 4 + o % 4] = plain(w.values[o * layer.in + k]);
-    }
-    if (int8) quantise(layer);
-    layers.push_back(std::move(layer));
+    const std::string number = std::to_string(l), from = of + '.' + number;
+    const auto rows = static_cast<int32_t>(network.find(from + ".weight")->shape[0]);
+    layers.push_back(layer_of(network, from, mark + number, l + 1 == count ? outputs : rows, int8));
   }
   return layers;
 }
@@ -79,11 +86,18 @@ std::vector<Layer> layers_of(const Network& network, const std::string& of, cons
 struct Layers {
   std::vector<Layer> actor;  // for the mean action: where the last one has deviations too, its first half
   std::vector<Layer> eyes;
+  std::vector<Layer> memory;  // of a GRU: what the input gives, what the state gives
 };
 Layers layers_of(const Network& network, bool int8) {
   const Eyes& e = network.eyes;
-  return {layers_of(network, "actor", "", network.num_layers, network.action_dim, int8),
-          layers_of(network, "encoder", "eye_", e.num_layers, e.features, int8)};
+  Layers out = {layers_of(network, "actor", "", network.num_layers, network.action_dim, int8),
+                layers_of(network, "encoder", "eye_", e.num_layers, e.features, int8),
+                {}};
+  for (const char* part : {"input", "state"})
+    if (network.memory.units)
+      out.memory.push_back(
+          layer_of(network, std::string("memory.") + part, part, 3 * network.memory.units, int8));
+  return out;
 }
 
 // ---- the file's own arithmetic with int8 weights, to measure what they cost -------------------------------
@@ -139,8 +153,37 @@ std::vector<float> run_eyes(const Eyes& e, const std::vector<Layer>& layers, con
   return best;
 }
 
+// The hidden layers, a step of the GRU, the last layer.
+void run_gru(const Network& network, const Layers& layers, std::vector<float>& x, std::vector<float>& state) {
+  for (size_t l = 0; l + 1 < layers.actor.size(); ++l) {
+    run_layer(layers.actor[l], x);
+    run_activation(network.activation, x);
+  }
+  const auto units = static_cast<size_t>(network.memory.units);
+  std::vector<float> part = state;
+  run_layer(layers.memory[0], x);
+  run_layer(layers.memory[1], part);
+  const auto sigmoid = [](float v) { return 0.5f * std::tanh(0.5f * v) + 0.5f; };
+  for (size_t i = 0; i < units; ++i) {
+    const float r = sigmoid(x[i] + part[i]), z = sigmoid(x[units + i] + part[units + i]);
+    const float n = std::tanh(std::fma(r, part[2 * units + i], x[2 * units + i]));
+    state[i] = std::fma(z, state[i] - n, n);
+  }
+  x = state;
+  run_layer(layers.actor.back(), x);
+}
+
+// Puts the history behind the row, and the row into the history.
+void run_history(const Memory& memory, std::vector<float>& x, std::vector<float>& state) {
+  std::vector<float> next;
+  for (const int32_t i : memory.columns) next.push_back(x[static_cast<size_t>(i)]);
+  next.insert(next.end(), state.begin(), state.end() - static_cast<long>(memory.columns.size()));
+  x.insert(x.end(), state.begin(), state.end());
+  state = next;
+}
+
 std::vector<float> run_layers(const Network& network, const Layers& layers, const float* obs,
-                              const Clouds& clouds, size_t row) {
+                              const Clouds& clouds, size_t row, std::vector<float>& state) {
   std::vector<float> x(obs, obs + network.obs_dim);
   if (const NamedTensor* clip = network.find("normalizer.clip")) {
     const auto &shift = network.find("normalizer.shift")->values,
@@ -154,7 +197,13 @@ std::vector<float> run_layers(const Network& network, const Layers& layers, cons
                  clouds.classes.data() + row * count, clouds.colors.data() + 3 * row * count);
     x.insert(x.end(), features.begin(), features.end());
   }
-  run_all(layers.actor, network.activation, x);
+  const Memory& memory = network.memory;
+  if (memory.size && row % kProbeEpisode == 0) state.assign(static_cast<size_t>(memory.size), 0);
+  if (memory.size && !memory.units) run_history(memory, x, state);
+  if (memory.units)
+    run_gru(network, layers, x, state);
+  else
+    run_all(layers.actor, network.activation, x);
   x.resize(static_cast<size_t>(network.action_dim));
   for (float& a : x) a = std::clamp(a, -1.0f, 1.0f);
   return x;
@@ -357,7 +406,11 @@ std::string channels_of(const Eyes& e, const std::string& type) {
 struct Call {
   std::string declaration, call, no_points;
 };
-Call call_of(const Eyes& e) {
+Call call_of(const Network& network) {
+  const Eyes& e = network.eyes;
+  if (network.memory.size)
+    return {"void NAME_act(const float *obs, float *state, float *action)", "NAME_act(obs, state, action)",
+            ""};
   if (e.points == 0) return {"void NAME_act(const float *obs, float *action)", "NAME_act(obs, action)", ""};
   const std::string act = "NAME_act_points(obs, points, " + channels_of(e, "");
   return {"void NAME_act_points(const float *obs, const float *points, " +
@@ -379,7 +432,9 @@ bool own_activation(const Network& network, const Layers& layers) {
 std::string activations_text(const Network& network, const Layers& layers) {
   const bool actor = layers.actor.size() > 1, eyes = own_activation(network, layers);
   std::string out;
-  if ((actor && network.activation != "relu") || (eyes && network.eyes.activation != "relu")) out += kTanh;
+  if (network.memory.units || (actor && network.activation != "relu") ||
+      (eyes && network.eyes.activation != "relu"))
+    out += kTanh;
   if (actor) out += activation_text(network.activation, false);
   return eyes ? out + activation_text(network.eyes.activation, true) : out;
 }
@@ -394,14 +449,47 @@ std::string eyes_text(const Network& network, const Layers& layers, bool int8) {
   see = replaced(see, "STEP", literal(static_cast<double>(0.001f / e.range)));
   const std::string act =
       replaced(replaced(with_rows(kActPointsHead, layers.actor), "EYE_ACTIVATE", activate), "DECLARATION",
-               call_of(e).declaration);
+               call_of(network).declaration);
   std::string out = kMillimetres + see + act;
   out = replaced(out, "CHANNEL_PARAMETERS", channels_of(e, "const unsigned char *"));
   out = replaced(out, "CHANNEL_ARGUMENTS", channels_of(e, ""));
   return replaced(out, "FEATURES", std::to_string(e.features));
 }
 
+// The call of a layer by name.
+std::string layer_call(const Layer& y, bool int8, const char* in, const char* out) {
+  const std::string scale = int8 ? "NAME_scale_" + y.number + ", " : "";
+  return format("  NAME_layer(NAME_weight_%s, %sNAME_bias_%s, %s, %zu, %zu, %s);\n", y.number.c_str(),
+                scale.c_str(), y.number.c_str(), in, y.in, y.out, out);
+}
+
+std::string memory_text(const Network& network, const Layers& layers, bool int8) {
+  const Memory& m = network.memory;
+  const char* normalise = network.find("normalizer.clip") ? kNormalise : kTake;
+  std::vector<Layer> rows = layers.actor;  // the first buffer has the row too
+  rows[0].in = std::max(rows[0].in, static_cast<size_t>(network.obs_dim));
+  std::string out = replaced(with_rows(kActStateHead, rows), "DECLARATION", call_of(network).declaration);
+  if (!m.units) {
+    out = replaced(out, "GATES", "") + kRow + normalise +
+          replaced(kHistory, "KEPT", std::to_string(m.columns.size()));
+    out += layer_calls(layers.actor, int8, "  ", "NAME_activate");
+    return out + replaced(kStateTail, "LAST", last_row(layers.actor));
+  }
+  out = replaced(out, "GATES", replaced(kGates, "COUNT", std::to_string(layers.memory[0].out)));
+  out += std::string(kRow) + normalise;
+  const std::vector<Layer> hidden(layers.actor.begin(), layers.actor.end() - 1);
+  out += layer_calls(hidden, int8, "  ", "NAME_activate");
+  const char* seen = hidden.size() % 2 ? "back" : "front";
+  if (!hidden.empty()) out += format("  NAME_activate(%s, %zu);\n", seen, hidden.back().out);
+  out +=
+      layer_call(layers.memory[0], int8, seen, "gates") + layer_call(layers.memory[1], int8, "state", "part");
+  out += replaced(replaced(kGru, "UNITS", std::to_string(m.units)), "TWICE", std::to_string(2 * m.units));
+  out += layer_call(layers.actor.back(), int8, "next", last_row(layers.actor));
+  return out + replaced(kStateTail, "LAST", last_row(layers.actor));
+}
+
 std::string act_text(const Network& network, const Layers& layers, bool int8) {
+  if (network.memory.size) return memory_text(network, layers, int8);
   std::string out =
       network.eyes.points ? eyes_text(network, layers, int8) : with_rows(kActHead, layers.actor);
   out += kRow;
@@ -427,7 +515,8 @@ std::string test_points_text(const Eyes& e) {
   out = replaced(out, "TEST_POINTS", std::to_string(test_points(e)));
   return replaced(replaced(out, "SPAN", std::to_string(2 * reach + 1)), "REACH", std::to_string(reach));
 }
-std::string test_main_text(const Eyes& e) {
+std::string test_main_text(const Network& network) {
+  const Eyes& e = network.eyes;
   std::string cloud, draw, refused;
   if (e.points) {
     cloud = "  static float points[3 * NAME_test_points];\n";
@@ -439,9 +528,11 @@ std::string test_main_text(const Eyes& e) {
     refused = kRefusePoints;
     if (e.classes) refused += replaced(kRefuseClasses, "CLASSES", std::to_string(e.classes));
   }
+  if (network.memory.size)
+    cloud = "  static float state[NAME_state_size];\n";  // zeros; the rows are an episode
   std::string out = replaced(replaced(kTestMain, "CLOUD", cloud), "DRAW", draw);
   out = replaced(out, "REFUSED", refused);
-  const Call call = call_of(e);
+  const Call call = call_of(network);
   return replaced(replaced(out, "NO_POINTS", call.no_points), "CALL", call.call);
 }
 
@@ -449,7 +540,7 @@ std::string head_text(const Network& network, const std::vector<Layer>& layers,
                       const std::vector<ObsField>& fields, const ActionBounds& bounds,
                       const rdm_policy_info& info) {
   const Eyes& e = network.eyes;
-  const Call call = call_of(e);
+  const Call call = call_of(network);
   std::string out = kHead, beside, sees;
   if (e.points) {
     beside = "points[3 * NAME_num_points], ";
@@ -457,6 +548,7 @@ std::string head_text(const Network& network, const std::vector<Layer>& layers,
     if (e.classes) sees += kSeesClasses;
     if (e.color) sees += kSeesColors;
   }
+  if (network.memory.size) beside = "state[NAME_state_size] = {0}, ", sees = kRemembers;
   out = replaced(
       replaced(replaced(out, "BESIDE", beside), "CALL", replaced(call.call, "count", "NAME_num_points")),
       "SEES", sees);
@@ -478,6 +570,9 @@ std::string head_text(const Network& network, const std::vector<Layer>& layers,
   for (size_t l = 0; l + 1 < layers.size(); ++l)
     shape += " -> " + std::to_string(network.find("actor." + layers[l].number + ".bias")->shape[0]) + ' ' +
              network.activation;
+  if (network.memory.units) shape += format(" -> GRU %d", network.memory.units);
+  if (network.memory.size && !network.memory.units)
+    shape += format(", with a history of %d", network.memory.size);
   shape += " -> " + std::to_string(network.action_dim);
   if (!fields.empty()) {
     const bool whole = std::all_of(fields.begin(), fields.end(), [](const ObsField& f) { return f.seen; });
@@ -498,7 +593,10 @@ std::string head_text(const Network& network, const std::vector<Layer>& layers,
 }
 
 size_t widest_of(const Layers& layers) {
-  return std::max(sizes_of(layers.actor).widest, layers.eyes.empty() ? 0 : sizes_of(layers.eyes).widest);
+  size_t widest =
+      std::max(sizes_of(layers.actor).widest, layers.eyes.empty() ? 0 : sizes_of(layers.eyes).widest);
+  for (const Layer& layer : layers.memory) widest = std::max(widest, layer.in);
+  return widest;
 }
 size_t stack_bytes(const Network& network, const Layers& layers, bool int8) {
   const Sizes s = sizes_of(layers.actor);
@@ -507,6 +605,8 @@ size_t stack_bytes(const Network& network, const Layers& layers, bool int8) {
     const Sizes e = sizes_of(layers.eyes);
     floats += e.front + e.back + static_cast<size_t>(network.eyes.features);
   }
+  floats += static_cast<size_t>(network.memory.size);
+  for (const Layer& layer : layers.memory) floats += layer.out;
   return floats * sizeof(float) + (int8 ? widest_of(layers) * sizeof(int16_t) : 0);
 }
 
@@ -545,8 +645,9 @@ CSource c_source(const redman::Policy& policy, const Network& network, const std
     append(exact, expected);
     const auto in = static_cast<size_t>(network.obs_dim), dim = static_cast<size_t>(network.action_dim);
     double squares = 0;
+    std::vector<float> state;
     for (size_t row = 0; row < obs.size() / in; ++row) {
-      std::vector<float> action = run_layers(network, layers, obs.data() + row * in, clouds, row);
+      std::vector<float> action = run_layers(network, layers, obs.data() + row * in, clouds, row, state);
       hold_to(bounds, action);
       for (size_t j = 0; j < dim; ++j) {
         const auto gap = static_cast<double>(std::abs(action[j] - exact[row * dim + j]));
@@ -573,7 +674,7 @@ CSource c_source(const redman::Policy& policy, const Network& network, const std
   const bool held = !bounds.low.empty();
   if (held) tables.add("low", bounds.low), tables.add("high", bounds.high);
   if (eyes.points) tables.add("origin", std::vector<float>(eyes.origin, eyes.origin + 3));
-  for (const auto* part : {&layers.actor, &layers.eyes})
+  for (const auto* part : {&layers.actor, &layers.eyes, &layers.memory})
     for (const Layer& layer : *part) {
       if (int8)
         tables.add("weight_" + layer.number, layer.small), tables.add("scale_" + layer.number, layer.scale);
@@ -584,11 +685,17 @@ CSource c_source(const redman::Policy& policy, const Network& network, const std
   const rdm_policy_info& info = policy.info();
   std::string& text = out.text;
   text = head_text(network, layers.actor, fields, bounds, info);
-  text += replaced(replaced(kDeclarations, "DECLARATION", call_of(eyes).declaration), "EYE_SIZES",
-                   !eyes.points ? ""
-                                : format(",\n       NAME_num_points = %d, NAME_num_point_classes = %d",
-                                         eyes.points, eyes.classes));
+  text += replaced(replaced(kDeclarations, "DECLARATION", call_of(network).declaration), "EYE_SIZES",
+                   network.memory.size ? format(", NAME_state_size = %d", network.memory.size)
+                   : !eyes.points      ? ""
+                                       : format(",\n       NAME_num_points = %d, NAME_num_point_classes = %d",
+                                                eyes.points, eyes.classes));
   text += tables.text();
+  if (const auto& kept = network.memory.columns; !kept.empty()) {
+    text += format("static const uint16_t NAME_kept[%zu] = {", kept.size());
+    for (size_t i = 0; i < kept.size(); ++i) text += format(i % 16 ? "%d, " : "\n  %d, ", kept[i]);
+    text += "\n};\n";
+  }
   text += kFma;
   text += activations_text(network, layers);
   text += int8 ? kLayerInt8 : kLayerFloat;
@@ -601,7 +708,7 @@ CSource c_source(const redman::Policy& policy, const Network& network, const std
                    literal(static_cast<double>(kTestSpread)));
   text = replaced(text, "FAR", literal(static_cast<double>(kTestFar)));
   text += test_points_text(eyes);
-  text += replaced(test_main_text(eyes), "SUMS", tables.calls());
+  text += replaced(test_main_text(network), "SUMS", tables.calls());
   for (const auto& [word, by] : std::vector<std::pair<std::string, std::string>>{
            {"WEIGHTS", weights},
            {"STACK", std::to_string(stack_bytes(network, layers, int8))},

@@ -4,7 +4,7 @@
 namespace tool {
 
 inline constexpr const char* kHead =
-    R"(/* Policy of TASK, exported by redman VERSION. C99 and C++; no heap, no library, no state: call it from
+    R"(/* Policy of TASK, exported by redman VERSION. C99 and C++; no heap, no library, no state of its own: call it from
  * any thread. STACK bytes of stack and a little.
  *
  *   float obs[NAME_obs_dim], BESIDEaction[NAME_action_dim];
@@ -42,6 +42,13 @@ inline constexpr const char* kSeesClasses =
 
 inline constexpr const char* kSeesColors =
     R"( * point_color [count][3]: its colour, red, green and blue.
+)";
+
+// Of a policy with a memory.
+inline constexpr const char* kRemembers =
+    R"( *
+ * state [NAME_state_size]: what it remembers of an episode, the caller's: all zeros where one begins, and from one
+ * decision to the next as NAME_act leaves it. Where an action is NaN it stays as it was.
 )";
 
 inline constexpr const char* kDeclarations = R"( */
@@ -185,6 +192,43 @@ void NAME_act(const float *obs, float *action) {
   float front[FRONT], back[BACK];
   float fault = 0.0f; /* NaN once something is not finite */
   int i;
+)";
+
+// ---- memory -----------------------------------------------------------------------------------------------
+inline constexpr const char* kActStateHead = R"(
+DECLARATION {
+  float front[FRONT], back[BACK], next[NAME_state_size]GATES;
+  float fault = 0.0f; /* NaN once something is not finite */
+  int i;
+)";
+
+inline constexpr const char* kGates = ", gates[COUNT], part[COUNT]";
+
+// Behind the hidden layers' calls.
+inline constexpr const char* kGru = R"(  for (i = 0; i < NAME_state_size; ++i) {
+    const float r = NAME_fma(0.5f, NAME_tanh(0.5f * (gates[i] + part[i])), 0.5f);
+    const float z = NAME_fma(0.5f, NAME_tanh(0.5f * (gates[UNITS + i] + part[UNITS + i])), 0.5f);
+    const float n = NAME_tanh(NAME_fma(r, part[TWICE + i], gates[TWICE + i]));
+    next[i] = NAME_fma(z, state[i] - n, n);
+  }
+)";
+
+inline constexpr const char* kHistory = R"(  for (i = 0; i < NAME_state_size; ++i) {
+    front[NAME_obs_dim + i] = state[i];
+    next[i] = i < KEPT ? front[NAME_kept[i]] : state[i - KEPT];
+    fault += state[i] - state[i];
+  }
+)";
+
+inline constexpr const char* kStateTail = R"(  for (i = 0; i < NAME_action_dim; ++i) {
+    const float a = LAST[i];
+    action[i] = a < LOWEST ? LOWEST : a > HIGHEST ? HIGHEST : a;
+    fault += action[i] - action[i];
+  }
+  for (i = 0; i < NAME_action_dim; ++i) action[i] += fault;
+  if (fault == 0.0f)
+    for (i = 0; i < NAME_state_size; ++i) state[i] = next[i];
+}
 )";
 
 inline constexpr const char* kRow = R"(  for (i = 0; i < NAME_obs_dim; ++i) {

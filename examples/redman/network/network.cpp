@@ -43,6 +43,19 @@ void read_eyes(Network& n, const rdm_policy_info& info) {
   if (e.color) n.metadata.push_back({"example_point_color", join(n.find("example.point_color"))});
 }
 
+void read_memory(Network& n, const rdm_policy_info& info) {
+  Memory& m = n.memory;
+  m.size = info.state_dim;
+  if (m.size == 0) return;
+  if (const NamedTensor* columns = n.find("history.columns"))
+    for (const float v : columns->values) m.columns.push_back(static_cast<int32_t>(v));
+  else
+    m.units = m.size;
+  n.metadata.insert(n.metadata.end(), {{"state_dim", std::to_string(m.size)},
+                                       {"state_at_start", "zeros"},
+                                       {"memory", m.units ? "gru" : "history"}});
+}
+
 }  // namespace
 
 Network::Network(const redman::Policy& policy) {
@@ -71,6 +84,7 @@ Network::Network(const redman::Policy& policy) {
               {"example_obs", join(find("example.obs"))},
               {"example_action", join(find("example.action"))}};
   read_eyes(*this, info);
+  read_memory(*this, info);
 }
 
 const NamedTensor* Network::find(const std::string& name) const {

@@ -24,12 +24,21 @@ struct Eyes {
   float range = 1;         // m
 };
 
+// What a policy remembers of each world, zeros at first: the state of a GRU before its last layer, or the columns of
+// the decisions before this one, newest first, which stand behind the row.
+struct Memory {
+  int32_t size = 0;              // numbers, 0: there is no memory
+  int32_t units = 0;             // of the GRU, 0: it is a history
+  std::vector<int32_t> columns;  // of a row, that the history keeps
+};
+
 struct Network {
   explicit Network(const redman::Policy& policy);
 
   std::string activation;  // "tanh", "elu", "relu"
   int32_t obs_dim = 0, action_dim = 0, num_layers = 0;
   Eyes eyes;
+  Memory memory;
   std::vector<NamedTensor> tensors;  // as rdm_policy_tensor_at names them
   // What a reader has to know beside the numbers: task, layout hash, rates, bounds of the action, entries of
   // a row that count.
@@ -43,7 +52,8 @@ struct Network {
 // the state. The normaliser is part of the graph. Of a policy with eyes there are the inputs points [batch]
 // [num_points][3], m, where it tells classes apart point_class [batch][num_points], bytes, and where it sees
 // colours point_color [batch][num_points][3], bytes: with any num_points, for what comes twice changes
-// nothing. The encoder is part of the graph too.
+// nothing. The encoder is part of the graph too. Of a policy with a memory there is the input state [batch]
+// [state_dim], zeros where an episode begins, and the output next_state: plain operators again.
 std::string onnx_bytes(const Network& network);
 
 // safetensors: a JSON header and the numbers.

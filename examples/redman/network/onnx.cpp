@@ -206,6 +206,57 @@ std::string add_head(Graph& graph, const std::string& x, const NamedTensor& weig
   return part(false, "mean");
 }
 
+// Rows [gate units, (gate + 1) units) of what is there for all three gates.
+NamedTensor gate_of(const NamedTensor& t, int32_t gate) {
+  static constexpr const char* kGates[] = {".r", ".z", ".n"};
+  const size_t n = t.values.size() / 3;
+  const auto begin = t.values.begin() + static_cast<long>(static_cast<size_t>(gate) * n);
+  NamedTensor part = {t.name + kGates[gate], t.shape, {begin, begin + static_cast<long>(n)}};
+  part.shape[0] /= 3;
+  return part;
+}
+
+// A step of the GRU; returns the next state.
+std::string add_gru(const Network& network, Graph& graph, const std::string& x) {
+  const auto part = [&](const std::string& in, const char* of, int32_t gate) {
+    const std::string name = std::string("memory.") + of;
+    const NamedTensor weight = gate_of(*network.find(name + ".weight"), gate),
+                      bias = gate_of(*network.find(name + ".bias"), gate);
+    return graph.node("Gemm", {in, graph.constant(weight), graph.constant(bias)}, name + std::to_string(gate),
+                      {{"transB", 1}});
+  };
+  const auto sum = [&](int32_t gate, const char* out) {
+    return graph.node("Add", {part(x, "input", gate), part("state", "state", gate)}, out);
+  };
+  const std::string r = graph.node("Sigmoid", {sum(0, "memory.r.sum")}, "memory.r"),
+                    z = graph.node("Sigmoid", {sum(1, "memory.z.sum")}, "memory.z"),
+                    kept = graph.node("Mul", {r, part("state", "state", 2)}, "memory.kept");
+  const std::string n =
+      graph.node("Tanh", {graph.node("Add", {part(x, "input", 2), kept}, "memory.n.sum")}, "memory.n");
+  const std::string change =
+      graph.node("Mul", {z, graph.node("Sub", {"state", n}, "memory.gap")}, "memory.change");
+  return graph.node("Add", {n, change}, "next_state");
+}
+
+// The row with its history behind it, and the history of the next one.
+std::string add_history(const Memory& memory, Graph& graph, const std::string& x) {
+  const auto width = static_cast<int64_t>(memory.columns.size());
+  const std::vector<int64_t> columns(memory.columns.begin(), memory.columns.end());
+  const std::string newest = graph.node("Gather", {x, graph.constant("history.kept", {width}, columns)},
+                                        "history.newest", {{"axis", 1}});
+  std::vector<int64_t> older;
+  for (int64_t i = 0; i < memory.size - width; ++i) older.push_back(i);
+  if (older.empty()) {
+    graph.node("Identity", {newest}, "next_state");
+  } else {
+    const auto count = static_cast<int64_t>(older.size());
+    const std::string rest = graph.node("Gather", {"state", graph.constant("history.older", {count}, older)},
+                                        "history.rest", {{"axis", 1}});
+    graph.node("Concat", {newest, rest}, "next_state", {{"axis", 1}});
+  }
+  return graph.node("Concat", {x, "state"}, "seen", {{"axis", 1}});
+}
+
 }  // namespace
 
 std::string onnx_bytes(const Network& network) {
@@ -214,10 +265,14 @@ std::string onnx_bytes(const Network& network) {
   std::string x = "obs";
   add_normalizer(network, graph, x);
   add_eyes(network, graph, x);
+  const Memory& memory = network.memory;
+  if (memory.size) graph.input("state", {kBatch, memory.size});
+  if (memory.size && !memory.units) x = add_history(memory, graph, x);
   const NamedTensor *log_std = network.find("actor.log_std"), *bounds = network.find("actor.log_std_bounds");
   for (int32_t l = 0; l < network.num_layers; ++l) {
     const std::string layer = "actor." + std::to_string(l);
     const bool last = l + 1 == network.num_layers;
+    if (last && memory.units) x = add_gru(network, graph, x);
     const NamedTensor &weight = *network.find(layer + ".weight"), &bias = *network.find(layer + ".bias");
     if (last && bounds)
       x = add_head(graph, x, weight, bias, *bounds);
@@ -237,6 +292,7 @@ std::string onnx_bytes(const Network& network) {
     graph.output("log_std", {network.action_dim});
   else
     graph.output("log_std", {kBatch, network.action_dim});
+  if (memory.size) graph.output("next_state", {kBatch, memory.size});
 
   Message operators, model;  // ModelProto
   operators.text(1, "");

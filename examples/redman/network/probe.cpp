@@ -1,5 +1,6 @@
 #include "network/probe.hpp"
 
+#include <redman/memory.hpp>
 #include <redman/sense.hpp>
 
 namespace tool {
@@ -53,6 +54,13 @@ std::vector<float> mean_actions(const redman::Policy& policy, const std::vector<
   };
   const size_t bytes = policy.scratch_bytes(count);
   std::vector<Line> scratch((bytes + sizeof(Line) - 1) / sizeof(Line));
+  std::vector<float> state;
+  for (size_t row = 0; info.state_dim > 0 && row < rows; ++row) {
+    if (row % kProbeEpisode == 0) state = redman::start(policy, 1);
+    redman::act(policy, obs.data() + row * static_cast<size_t>(info.obs_dim), state.data(), 1, nullptr,
+                action.data() + row * static_cast<size_t>(info.action_dim), scratch.data(), bytes);
+  }
+  if (info.state_dim > 0) return action;
   if (info.num_points == 0)
     policy.act(obs.data(), count, nullptr, action.data(), scratch.data(), bytes);
   else

@@ -16,6 +16,9 @@ struct Clouds {
 // As many as rows, within twice the encoder's range about its origin.
 Clouds probe_clouds(const Network& network, size_t rows, uint64_t seed);
 
+// Decisions in a row of a policy with a memory: at every row whose number is a multiple of this it begins anew.
+inline constexpr size_t kProbeEpisode = 1000;
+
 // [rows][action_dim] mean actions.
 std::vector<float> mean_actions(const redman::Policy& policy, const std::vector<float>& obs,
                                 const Clouds& clouds);
