@@ -58,7 +58,7 @@ void play_rows(redman::Pool pool, const ActorChoice& choice, std::vector<float>&
   }
 }
 
-// Random observations and what the policy does; of one with eyes, beside random clouds and played ones.
+// Random observations and what the policy does, of one with a memory in one episode (kProbeEpisode); of one with eyes, beside random clouds and played ones.
 Json probe_json(const redman::Policy& policy, const Network& network, const ActorChoice& choice,
                 const ActionBounds& bounds, const ExportFlags& flags) {
   const auto rows = static_cast<size_t>(flags.probes);
@@ -74,6 +74,7 @@ Json probe_json(const redman::Policy& policy, const Network& network, const Acto
   hold_to(bounds, actions);
   json["action"] = std::move(actions);
   json["obs"] = std::move(obs);
+  if (network.memory.size) json["state_dim"] = network.memory.size, json["episode"] = kProbeEpisode;
   if (eyes.points == 0) return json;
   json["num_points"] = eyes.points;
   json["played"] = played;

@@ -1,5 +1,6 @@
 // onnx_compare.cjs MODULES FILE.onnx PROBE.json TOLERANCE: runs the file in onnxruntime-node on the
 // observations of the probe, in batches of 1 and of 7 and all at once, and compares with the actions in it. Of a policy with
+// a memory one after the other, with the state that the one before gave. Of one with
 // eyes also with the points backwards and some of them twice, and with the first one alone, which has to make a difference.
 const path = require('path');
 const fs = require('fs');
@@ -35,11 +36,14 @@ async function main() {
     return feeds;
   };
   const all = Array.from({ length: count }, (_, i) => i);
+  let state = new Float32Array(want.state_dim || 0);
   const compare = async (begin, rows, order = all) => {
     const data = obs.slice(begin * want.obs_dim, (begin + rows) * want.obs_dim);
     const feeds = { obs: new ort.Tensor('float32', data, [rows, want.obs_dim]) };
     if (count) Object.assign(feeds, cloud(begin, rows, order));
+    if (want.state_dim) feeds.state = new ort.Tensor('float32', state, [1, want.state_dim]);
     const out = await session.run(feeds);
+    if (want.state_dim) state = Float32Array.from(out.next_state.data);
     const shape = [rows, want.action_dim];
     if (String(out.action.dims) !== String(shape)) throw new Error(`action is ${out.action.dims}, not ${shape}`);
     const stds = out.log_std.dims;
@@ -51,9 +55,13 @@ async function main() {
       spread = Math.max(spread, Math.abs(a - out.action.data[0]));
     });
   };
-  await compare(0, want.rows);
-  for (let begin = 0; begin + 7 <= want.rows; begin += 7) await compare(begin, 7);
-  for (let begin = 0; begin < Math.min(want.rows, 100); ++begin) await compare(begin, 1);
+  if (want.state_dim) {
+    for (let row = 0; row < want.rows; ++row) await compare(row, 1);
+  } else {
+    await compare(0, want.rows);
+    for (let begin = 0; begin + 7 <= want.rows; begin += 7) await compare(begin, 7);
+    for (let begin = 0; begin < Math.min(want.rows, 100); ++begin) await compare(begin, 1);
+  }
   if (count) await compare(0, want.rows, [...all].reverse().concat(all.slice(0, 5)));
   console.log(`${want.rows} rows, largest difference ${largest.toExponential(2)}, actions spread over ${spread.toFixed(3)}`);
   if (!(largest <= Number(tolerance))) throw new Error(`the difference is above ${tolerance}`);

@@ -22,7 +22,7 @@ policy() {
   # the numbers of the probe, one a line
   part() { sed "s/.*\"$1\":\\[*//; s/[]},].*//" "$name.json"; echo; }
   list() { sed "s/.*\"$1\":\\[//; s/\\].*//" "$name.json" | tr , '\n'; echo; }
-  { part rows; list obs; list action; [ -z "$eyes" ] || list points; case $eyes in *KINDS*) list point_class ;; esac; case $eyes in *COLORS*) list point_color ;; esac; } > "$name.txt"
+  { part rows; list obs; list action; case $eyes in *EYES*) list points ;; esac; case $eyes in *KINDS*) list point_class ;; esac; case $eyes in *COLORS*) list point_color ;; esac; } > "$name.txt"
 }
 # status FILE WANT WHAT: the self-test's
 status() {
@@ -61,7 +61,7 @@ check() {
     fi
     status "$file" 0 "$file"
     # any number that is changed is noticed, and a policy that takes what is no number
-    for table in weight_0 bias_1 ${eyes:+weight_eye_0 origin} ${shield:+low high}; do
+    for table in weight_0 $(case $name in bare_gru) echo weight_input bias_state ;; *) echo bias_1 ;; esac) $(case $eyes in *EYES*) echo weight_eye_0 origin ;; esac) ${shield:+low high}; do
       awk -v table="_$table[" '{ if (on) { sub(/^  -?/, "&1"); on = 0 } if (index($0, table) && /^static const/) on = 1; print }' \
         "$file" > changed.c
       cmp -s "$file" changed.c && say "$file: nothing was changed in $table"
@@ -78,7 +78,7 @@ check() {
         status changed.c 1 "$file without the guards' $side ends"
       done
     fi
-    [ -z "$eyes" ] && continue
+    case $eyes in *EYES*) ;; *) continue ;; esac
     sed 's/fault += points.*/;/; s/fault += best.*/;/' "$file" > changed.c
     status changed.c 3 "$file with points that are not finite"
     sed 's/if (count < 1).*/;/' "$file" > changed.c
@@ -122,8 +122,18 @@ check kinds --seed 3 --set encoder=8,8,9 --set encoder_classes=4 --set encoder_a
 eyes='-DEYES -DKINDS -DCOLORS'
 # shellcheck disable=SC2086
 check tints --set encoder=8,9 --set encoder_classes=5 --set encoder_color=true --set goal_points=8 --set hidden=16 $cloud
+# with a memory the rows are an episode of 1,000 decisions
+eyes=-DSTATE
+check gru --set memory=gru:13 --set hidden=16
+check bare_gru --set memory=gru:6 --set hidden= --set std_mode=state
+check past --set history=4 --set hidden=16
+check some --set history=3 --set 'history_fields=object.*' --set 'actor_obs=proprioception,object.*' --set hidden=16
+for name in gru past; do
+  sed 's/state\[i\] = next\[i\]/state[i] = state[i]/' $name.c > changed.c
+  status changed.c 1 "$name without its memory"
+done
 eyes=
-[ $checked -eq 12 ] || say "$checked policies"
+[ $checked -eq 16 ] || say "$checked policies"
 
 # several policies in one program, by one file or by several
 printf '#include "%s"\n#include "%s"\n#include "%s"\n#include "%s"\nint main(void) { return 0; }\n' tanh.c elu_8.c elu_8.c kinds.c > both.c

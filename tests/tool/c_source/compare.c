@@ -2,7 +2,7 @@
  * their own: rows, then obs [rows][obs_dim], then action [rows][action_dim]. Prints the largest difference,
  * then how many actions are the same bytes. NAME is the prefix of the export, POLICY its file. With EYES
  * points [rows][num_points][3] come behind, which are given backwards and the first one twice, with KINDS
- * point_class, and with COLORS point_color. */
+ * point_class, and with COLORS point_color. With STATE the rows are an episode of a policy with a memory. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -27,6 +27,9 @@ int main(int argc, char** argv) {
   FILE* f = argc > 1 ? fopen(argv[1], "r") : NULL;
   size_t rows = 0, same = 0;
   float action[SYMBOL(NAME, _action_dim)], largest = 0;
+#ifdef STATE
+  static float state[SYMBOL(NAME, _state_size)];
+#endif
   if (!f || fscanf(f, "%zu", &rows) != 1) return 2;
   float *obs = numbers(f, rows * in), *want = numbers(f, rows * out);
 #ifdef EYES
@@ -66,7 +69,11 @@ int main(int argc, char** argv) {
     SYMBOL(NAME, _act_points)(obs + r * in, cloud, (int)count + 1, action);
 #endif
 #else
+#ifdef STATE
+    SYMBOL(NAME, _act)(obs + r * in, state, action);
+#else
     SYMBOL(NAME, _act)(obs + r * in, action);
+#endif
 #endif
     for (size_t j = 0; j < out; ++j) {
       const float gap = fabsf(action[j] - want[r * out + j]);

@@ -1,0 +1,166 @@
+// Policies and agents that remember, through the ABI: one decision with a state in and out, actors, forgetting, and
+// each refusal.
+#include <cmath>
+#include <redman/memory.hpp>
+#include <redman/plan.hpp>
+
+#include "contract.hpp"
+#include "heap_count.hpp"
+#include "policies.hpp"
+
+namespace {
+
+using Bytes = std::vector<unsigned char>;
+const char* const kKinds[] = {"memory=gru:6\nhidden=8", "history=4\nhidden=8",
+                              "history=3\nhistory_fields=speed\nhidden=8",
+                              "memory=gru:3\nactor_obs=speed\nhidden="};
+const rdm_field kFields[] = {{"place", "m", 0, 1}, {"speed", "m/s", 1, 2}};
+
+rdm_agent* agent_of(const char* settings) {
+  rdm_agent_config c = agent_config();
+  c.settings = settings;
+  c.fields = kFields;
+  c.num_fields = 2;
+  return make_agent(c);
+}
+
+struct Kept {
+  explicit Kept(const char* settings) : agent(agent_of(settings)) {
+    EXPECT_EQ(feed_epoch(agent), RDM_OK) << rdm_last_error();
+    const Bytes bytes = policy_bytes(agent);
+    EXPECT_EQ(rdm_policy_read(&policy, bytes.data(), bytes.size()), RDM_OK) << rdm_last_error();
+    info = RDM_INIT(rdm_policy_info);
+    EXPECT_EQ(rdm_policy_get_info(policy, &info), RDM_OK);
+    scratch.resize(rdm_policy_scratch(policy, 4));
+  }
+  ~Kept() {
+    rdm_policy_destroy(policy);
+    rdm_agent_destroy(agent);
+  }
+  rdm_result act(const float* obs, float* state, int32_t rows, float* action) {
+    return rdm_policy_act_state(policy, obs, state, rows, nullptr, action, scratch.data(), scratch.size());
+  }
+  rdm_agent* agent;
+  rdm_policy* policy = nullptr;
+  rdm_policy_info info;
+  Bytes scratch;
+};
+
+// Row t of an episode of world e.
+std::vector<float> row(int t, int e) {
+  return {std::sin(0.7f * t + e), std::cos(1.3f * t), 0.1f * static_cast<float>(t * (e + 1) % 7)};
+}
+
+TEST(ContractMemory, RowsTogetherAndOneByOneActAlike) {
+  for (const char* kind : kKinds) {
+    SCOPED_TRACE(kind);
+    Kept k(kind);
+    ASSERT_GT(k.info.state_dim, 0);
+    const auto dim = static_cast<size_t>(k.info.state_dim);
+    std::vector<float> together(4 * dim), alone(4 * dim), action(8), one(2);
+    float moved = 0;
+    for (int t = 0; t < 12; ++t) {
+      std::vector<float> obs;
+      for (int e = 0; e < 4; ++e)
+        for (const float x : row(t, e)) obs.push_back(x);
+      const int64_t before = heap_count();
+      ASSERT_EQ(k.act(obs.data(), together.data(), 4, action.data()), RDM_OK) << rdm_last_error();
+      EXPECT_EQ(heap_count(), before);
+      for (size_t e = 0; e < 4; ++e) {
+        ASSERT_EQ(k.act(&obs[3 * e], &alone[e * dim], 1, one.data()), RDM_OK);
+        EXPECT_EQ(one, std::vector<float>(action.begin() + static_cast<long>(2 * e),
+                                          action.begin() + static_cast<long>(2 * e + 2)));
+      }
+      // from zeros the same row gives another action: what came before counts
+      std::vector<float> fresh(dim), first(2);
+      ASSERT_EQ(k.act(obs.data(), fresh.data(), 1, first.data()), RDM_OK);
+      moved = std::max(moved, std::abs(first[0] - action[0]));
+    }
+    EXPECT_EQ(together, alone);
+    EXPECT_GT(moved, 0);
+  }
+}
+
+TEST(ContractMemory, AnActorKeepsItAndClearsItWhereAnEpisodeEnds) {
+  for (const char* kind : kKinds) {
+    SCOPED_TRACE(kind);
+    Kept k(kind);
+    const auto dim = static_cast<size_t>(k.info.state_dim);
+    rdm_actor_config c;
+    ASSERT_EQ(rdm_actor_config_init(&c, sizeof c), RDM_OK);
+    c.policy = k.policy;
+    c.num_envs = 2;
+    redman::Actor actor(c), resumed(c);
+    std::vector<float> state(2 * dim), wanted(4), action(4), again(4);
+    for (int t = 0; t < 15; ++t) {
+      std::vector<float> obs = row(t, 0);
+      for (const float x : row(t, 1)) obs.push_back(x);
+      ASSERT_EQ(k.act(obs.data(), state.data(), 2, wanted.data()), RDM_OK);
+      ASSERT_EQ(rdm_actor_act(actor.get(), obs.data(), nullptr, nullptr, action.data()), RDM_OK);
+      EXPECT_EQ(action, wanted) << t;
+      if (t == 9) {  // a state that was saved goes on alike
+        ASSERT_EQ(rdm_actor_act(resumed.get(), obs.data(), nullptr, nullptr, again.data()), RDM_OK);
+        EXPECT_EQ(again, wanted);
+      }
+      const uint8_t ends[2] = {t % 4 == 3, t == 6};
+      ASSERT_EQ(rdm_actor_reset(actor.get(), ends, nullptr), RDM_OK);
+      for (size_t e = 0; e < 2; ++e)
+        if (ends[e]) std::fill_n(state.begin() + static_cast<long>(e * dim), dim, 0.0f);
+      if (t != 8) continue;
+      size_t size = 0;
+      ASSERT_EQ(rdm_actor_write_state(actor.get(), nullptr, 0, &size), RDM_OK);
+      Bytes bytes(size);
+      ASSERT_EQ(rdm_actor_write_state(actor.get(), bytes.data(), size, &size), RDM_OK);
+      ASSERT_EQ(rdm_actor_read_state(resumed.get(), bytes.data(), size), RDM_OK)
+          << rdm_actor_error(resumed.get());
+    }
+  }
+}
+
+TEST(ContractMemory, EveryTensorIsListedAndCanBeRead) {
+  for (const char* kind : kKinds) {
+    SCOPED_TRACE(kind);
+    Kept k(kind);
+    bool found = false;
+    rdm_tensor t;
+    for (int32_t i = 0; rdm_policy_tensor_at(k.policy, i, &t) == RDM_OK; ++i) {
+      std::vector<float> values(static_cast<size_t>(t.rows) * static_cast<size_t>(t.cols));
+      EXPECT_EQ(rdm_policy_get_tensor(k.policy, t.name, values.data(), values.size()), RDM_OK) << t.name;
+      found |= std::strstr(t.name, "memory.") || std::strstr(t.name, "history.");
+      if (std::strcmp(t.name, "history.columns") == 0 && std::strstr(kind, "speed")) {
+        EXPECT_EQ(values, (std::vector<float>{1, 2}));
+      }
+    }
+    EXPECT_TRUE(found);
+  }
+}
+
+TEST(ContractMemory, RefusalsNameTheCall) {
+  Kept k(kKinds[0]);
+  const std::vector<float> obs(12, 0.5f), noise(8);
+  std::vector<float> action(8), state(4 * 6);
+  EXPECT_EQ(
+      rdm_policy_act(k.policy, obs.data(), 4, nullptr, action.data(), k.scratch.data(), k.scratch.size()),
+      RDM_ERROR_STATE);
+  EXPECT_NE(std::string(rdm_last_error()).find("rdm_policy_act_state"), std::string::npos);
+  EXPECT_EQ(rdm_policy_sample(k.policy, obs.data(), 4, noise.data(), action.data(), nullptr, k.scratch.data(),
+                              k.scratch.size()),
+            RDM_ERROR_STATE);
+  EXPECT_EQ(k.act(obs.data(), nullptr, 4, action.data()), RDM_ERROR_ARGUMENT);
+  state[3] = NAN;
+  EXPECT_EQ(k.act(obs.data(), state.data(), 4, action.data()), RDM_ERROR_ARGUMENT);
+  state[3] = 0;
+  EXPECT_EQ(k.act(obs.data(), state.data(), 0, action.data()), RDM_ERROR_RANGE);
+  EXPECT_EQ(state, std::vector<float>(24, 0));
+  const uint8_t bad[4] = {0, 2, 0, 0};
+  EXPECT_EQ(rdm_agent_forget(k.agent, 7, nullptr), RDM_ERROR_RANGE);
+  EXPECT_EQ(rdm_agent_forget(k.agent, RDM_ACT_MEAN, bad), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_agent_forget(k.agent, RDM_ACT_SAMPLE, nullptr), RDM_OK);
+  // one without a memory: the state is not looked at
+  Kept plain("hidden=8");
+  EXPECT_EQ(plain.info.state_dim, 0);
+  EXPECT_EQ(plain.act(obs.data(), nullptr, 4, action.data()), RDM_OK) << rdm_last_error();
+  EXPECT_EQ(rdm_agent_forget(plain.agent, RDM_ACT_MEAN, nullptr), RDM_OK);
+}
+
+}  // namespace
