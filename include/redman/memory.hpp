@@ -19,8 +19,8 @@ inline std::vector<float> start(const Policy& policy, int32_t rows) {
 // state [rows][state_dim] becomes that after the decision.
 inline void act(const Policy& policy, const float* obs, float* state, int32_t rows,
                 const float* noise, float* action, void* scratch, size_t scratch_bytes) {
-  check(rdm_policy_act_state(policy.get(), obs, state, rows, noise, action, scratch,
-                             scratch_bytes));
+  check(
+      rdm_policy_act_state(policy.get(), obs, state, rows, noise, action, scratch, scratch_bytes));
 }
 // The same with scratch memory from the heap.
 inline void act(const Policy& policy, const float* obs, float* state, int32_t rows,

@@ -5640,9 +5640,9 @@ FUNCTIONS: dict[str, Function] = {
         """The memory of worlds begins anew where mask [num_envs] is not 0 (NULL: in all). mode: of which
         memory, RDM_ACT_SAMPLE or RDM_ACT_MEAN. The two are apart, so that evaluating by RDM_ACT_MEAN
         does not disturb what is collected. The memory of RDM_ACT_SAMPLE begins anew by itself where
-        rdm_agent_record or rdm_agent_put reports an end, and in a row with valid 0 that only resets; that
-        of RDM_ACT_MEAN does so here alone. An agent without a memory has nothing to forget. STATE while
-        sampled actions wait for their record, if it is their memory, or while an update is under way.
+        rdm_agent_record or rdm_agent_put reports an end, and in a row with valid 0 that only resets;
+        that of RDM_ACT_MEAN does so here alone. STATE while sampled actions wait for their record, if
+        it is their memory, or while an update is under way.
         """),
     "rdm_recording_config_init": Function(
         c_int32, {"c": POINTER(rdm_recording_config), "size": c_size_t},
