@@ -7,7 +7,8 @@
 namespace rdm {
 
 // One per algorithm file.
-extern const AlgoRow kPpo, kTrpo, kPpoLag, kTrpoLag, kCppoPid, kCpo, kPcpo, kFocops, kP3o, kIpo;
+extern const AlgoRow kPpo, kTrpo, kPpoLag, kTrpoLag, kCppoPid, kCpo, kPcpo, kFocops, kP3o, kIpo, kPdo, kRcpo,
+    kCup, kCrpo;
 extern const AlgoRow kMappo, kMappoLag, kHappo, kMacpo;
 
 // The row of an algorithm whose class is T.

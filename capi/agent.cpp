@@ -107,6 +107,7 @@ DecisionBuffers carve_decision(Arena& arena, const AgentConfig& c) {
   d.reward = arena.make<float>(n);
   d.cost = arena.make<float>(n * static_cast<size_t>(c.cost_dim));
   d.steps = arena.make<int32_t>(n);
+  d.limit = arena.make<float>(n);
   d.mask = arena.make<uint8_t>(n);
   d.valid = arena.make<uint8_t>(n);
   d.terminated = arena.make<uint8_t>(n);
@@ -294,6 +295,7 @@ Transition read_transition(const Agent& agent, const rdm_transition* t) {
   x.steps = in.steps;
   x.status = in.status;
   x.generation = in.generation;
+  x.limit = in.limit;
   return x;
 }
 

@@ -58,6 +58,7 @@ struct DecisionBuffers {
   float* reward = nullptr;   // [num_envs]
   float* cost = nullptr;     // [num_envs][cost_dim]
   int32_t* steps = nullptr;  // [num_envs]
+  float* limit = nullptr;    // [num_envs] of the episode that runs before the decision
   uint8_t *mask = nullptr, *valid = nullptr, *terminated = nullptr, *truncated = nullptr, *success = nullptr;
   uint32_t* status = nullptr;  // [num_envs] of the decision
 };

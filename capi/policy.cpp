@@ -173,7 +173,8 @@ bool memory_tensor_at(const PolicyView& v, int32_t i, PolicyTensor* out) {
     return true;
   }
   const float* const at = v.params + v.net().gru_offset();
-  const PolicyTensor all[] = {{"memory.input.weight", at, 3 * g.units, g.in},
+  const bool part = v.actor.num_hidden == 0 && v.columns;  // it reads the row itself
+  const PolicyTensor all[] = {{"memory.input.weight", at, 3 * g.units, part ? v.obs_dim() : g.in, part},
                               {"memory.input.bias", at + g.input_bias_offset(), 3 * g.units, 1},
                               {"memory.state.weight", at + g.state_offset(), 3 * g.units, g.units},
                               {"memory.state.bias", at + g.state_bias_offset(), 3 * g.units, 1}};

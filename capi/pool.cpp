@@ -117,6 +117,7 @@ void fill_side(rdm_pool* p) {
     p->fields[i] = {f.name, f.unit, f.offset, f.count};
   }
   for (int32_t i = 0; i < info.num_costs; ++i) p->cost_limits[i] = info.costs[i].limit;
+  if (task.limit(nullptr) >= 0) p->cost_limits[0] = task.limit(nullptr);
 }
 
 HostHooks hooks_of(const rdm_pool_config* c) {

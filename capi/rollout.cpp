@@ -212,10 +212,14 @@ void rollout(Agent& agent, Pool& pool, Shield* shield, DecisionBuffers& d, Epoch
   t.success = d.success;
   t.steps = d.steps;
   t.status = d.status;
+  const bool draws = pool.task().draws_limit();
+  if (draws) t.limit = d.limit;
   try {
     while (agent.missing() > 0) {
       agent.check_cancel();
       agent.act(b.obs, true, b.action, clouds);
+      for (int32_t i = 0; draws && i < pool.config().num_envs; ++i)
+        d.limit[i] = static_cast<float>(pool.limit(i));
       shielded.look(d);
       hold_action(pool, d, agent.action_repeat() / pool.repeat(), agent.raw_costs());
       shielded.charge(d);

@@ -168,6 +168,8 @@ void Agent::need_no_memory(const char* call) const {
 void Agent::begin_decision(const char* call) {
   need_no_update(call);
   if (collector_.idle()) check_cancel(), sampler_ = 0;
+  for (int32_t i = 0; !resolved_.values_costs && i < resolved_.num_limited; ++i)
+    collector_.set_charge(i, cost_weight(i) * resolved_.shared.reward_factor);
   if (imitation_.wanted() && !imitation_.has_rows())
     fail(Code::kState, "%s: option imitation needs a recording; call rdm_agent_set_recording first", call);
 }
@@ -192,6 +194,9 @@ void Agent::values(const float* obs, int32_t rows, float* value, float* cost) co
   if (o.normalize_reward || o.normalize_cost)
     fail(Code::kUnsupported, "agent: with option %s the values of its critics have no fixed unit",
          o.normalize_reward ? "normalize_reward" : "normalize_cost");
+  if (num_limited() > 0 && !resolved_.values_costs)
+    fail(Code::kUnsupported, "agent: %s has no critic of costs, and its critic of the reward has them in it",
+         resolved_.row->info.name);
   collector_.value_rows(obs, rows, value, cost);
   const auto factor = static_cast<float>(o.reward_factor);
   for (int32_t i = 0; i < rows; ++i) value[i] /= factor;

@@ -163,6 +163,10 @@ class Agent {
   // What is measured of each minibatch of the policy's passes before its gradient, and what follows from it.
   virtual Job measure_minibatch(const Batch&) { return {}; }
   virtual void begin_minibatch(const Surrogate&) {}
+  // So many passes of the policy alone follow the passes of all networks, and this job comes before them;
+  // policy_loss() is what they minimise then.
+  virtual int32_t second_passes() const { return 0; }
+  virtual Job begin_second() { return {}; }
   // Multiplier of limited cost i.
   virtual double cost_weight(int32_t) const { return 0; }
   // Copies live options to where they are used.
@@ -216,6 +220,7 @@ class Agent {
     bool warm = false;                   // one of the first epochs, in which the critics learn alone
     int64_t skipped = 0;                 // gradients, before it
     int32_t turn = -1, turn_passes = 0;  // -1: before the first
+    bool second = false;                 // passes of the policy alone
     int32_t minibatch = 0;               // that comes next
     Batch batch;
     int32_t block = 0, row = 0;  // that spread_on comes to next

@@ -5,7 +5,7 @@
 //   judge     episodes' costs against their limits, the algorithm's begin_epoch
 //   step      the algorithm's own step of the policy, where it has one (a trust region)
 //   passes    shuffled minibatches: what the algorithm measures, the gradient, Adam's step; the KL that may end
-//             them
+//             them; then an algorithm's second passes, of the policy alone
 //   end       schedules, the Epoch, an empty rollout
 //
 // Between two jobs, and between two units of a job, it can be left: what it needs to go on stands in members.
@@ -90,17 +90,20 @@ void Agent::unit(bool whole) {
         if (!job_) phase_ = Phase::kPass;
         break;
       case Phase::kPass:
-        if (run_.turn < 0 || run_.turn_passes == resolved_.shared.passes) {
-          if (++run_.turn == (run_.warm ? 1 : turns())) {
-            nets_.focus = -1;
-            phase_ = Phase::kSpread;
-          } else {
-            run_.turn_passes = 0;
-            if (!run_.warm) job_ = begin_turn(run_.turn);
-          }
-          break;
+        if (run_.second ? run_.turn_passes < second_passes()
+                        : run_.turn >= 0 && run_.turn_passes < resolved_.shared.passes)
+          return begin_pass();
+        run_.turn_passes = 0;
+        if (!run_.second && ++run_.turn < (run_.warm ? 1 : turns())) {
+          if (!run_.warm) job_ = begin_turn(run_.turn);
+        } else if (policy && !run_.second && second_passes() > 0) {
+          run_.second = true;
+          job_ = begin_second();
+        } else {
+          nets_.focus = -1;
+          phase_ = Phase::kSpread;
         }
-        return begin_pass();
+        break;
       case Phase::kMinibatch:
         if (!next_minibatch()) {
           end_pass(policy);
@@ -114,7 +117,7 @@ void Agent::unit(bool whole) {
           begin_minibatch(learner_.measured());
           imitation_.draw(run_.batch.rows);
         }
-        job_ = learner_.begin_gradient(policy, run_.turn == 0, run_.batch);
+        job_ = learner_.begin_gradient(policy, run_.turn == 0 && !run_.second, run_.batch);
         phase_ = Phase::kAdam;
         break;
       case Phase::kAdam:
@@ -124,7 +127,7 @@ void Agent::unit(bool whole) {
         return;
       case Phase::kStop: {
         const bool far = learner_.measured().kl > resolved_.shared.early_stop_kl;
-        if (far) run_.turn_passes = resolved_.shared.passes;
+        if (far) run_.turn_passes = std::max(resolved_.shared.passes, second_passes());
         phase_ = Phase::kPass;
         break;
       }
@@ -184,10 +187,11 @@ bool Agent::next_minibatch() {
 }
 
 void Agent::end_pass(const PolicyLoss* policy) {
-  run_.all += run_.last;
-  ++learned_.passes;
   ++run_.turn_passes;
   phase_ = Phase::kPass;
+  if (run_.second) return;
+  run_.all += run_.last;
+  ++learned_.passes;
   if (!policy || resolved_.shared.early_stop_kl <= 0) return;
   job_ = learner_.begin_measure(whole_batch());
   phase_ = Phase::kStop;
@@ -375,7 +379,7 @@ void Agent::fill_learned(double rate, Epoch& e) {
   e.loss_cost_value = learned_.mean.cost_loss;
   e.clip_fraction = learned_.mean.clipped;
   e.value_reward = collector_.mean_value(false);
-  if (rollout().num_costs > 0) e.value_cost = collector_.mean_value(true);
+  if (resolved_.values_costs) e.value_cost = collector_.mean_value(true);
 }
 
 }  // namespace rdm

@@ -59,6 +59,7 @@ struct Transition {
   const int32_t* steps = nullptr;    // [num_envs]
   const uint32_t* status = nullptr;  // [num_envs] RDM_STATUS_*
   uint64_t generation = 0;           // of the policy that sampled; 0: not known
+  const float* limit = nullptr;      // [num_envs] on column 0, of the episode alone; null: the agent's
 };
 
 // As the public ones.

@@ -7,9 +7,10 @@ namespace rdm {
 class Agent;
 struct ResolvedAgentConfig;
 
-// How many limited cost columns an algorithm learns from: none, any number, or one at a time (several are
-// refused, or the most violated counts, by option several_costs).
-enum class Costs : int32_t { kNone, kAny, kOne };
+// How many limited cost columns an algorithm learns from: none, any number, one at a time (several are
+// refused, or the most violated counts, by option several_costs), or any number that is taken off the reward by
+// its weights (Agent::cost_weight), so that they have no critic.
+enum class Costs : int32_t { kNone, kAny, kOne, kInReward };
 
 struct AlgoRow {
   AlgoInfo info;

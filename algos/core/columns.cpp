@@ -15,7 +15,7 @@ constexpr const char* kState[] = {"*"};
 constexpr const char* kTouch[] = {"*joint_position", "*joint_velocity", "*joint_force",   "*_tip_*",
                                   "*base_position",  "*base_angles",    "*base_rotation", "*base_velocity",
                                   "*base_spin",      "*action",         "accelerometer",  "gyro",
-                                  "magnetometer",    "velocimeter"};
+                                  "magnetometer",    "velocimeter",     "budget.*"};
 constexpr const char* kGoal[] = {"goal.*"};
 constexpr const char* kForces[] = {"*_tip_force", "*_tip_torque"};
 

@@ -53,7 +53,7 @@ Networks carve_networks(Arena& arena, const ResolvedAgentConfig& resolved) {
   n.actor_params = resolved.actor_params();
   n.eyes = resolved.eyes;
   n.frozen = resolved.frozen;
-  n.count = resolved.num_limited > 0 ? 3 : 2;
+  n.count = resolved.values_costs ? 3 : 2;
   n.action_dim = resolved.config.action_dim;
   n.std_size = resolved.state_std() ? 0 : (resolved.action_dim() + 15) / 16 * 16;
   n.std_low = static_cast<float>(elementary::log(resolved.shared.std_min));

@@ -130,6 +130,7 @@ void resolve_costs(ResolvedAgentConfig& resolved) {
          "most "
          "violated one",
          resolved.row->info.name, resolved.num_limited);
+  resolved.values_costs = resolved.row->costs != Costs::kInReward;
   if (resolved.row->adapt) resolved.row->adapt(resolved);
 }
 

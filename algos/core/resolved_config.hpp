@@ -42,6 +42,7 @@ struct ResolvedAgentConfig {
   Vector<ActorGroup> groups;
   Vector<GroupSpec> group_specs;
   int32_t num_limited = 0;         // limited cost columns; 0 for algorithms without costs
+  bool values_costs = false;       // they have a critic
   int32_t column[kMaxCosts] = {};  // [num_limited] column of each
   double limit[kMaxCosts] = {};    // [num_limited] on the sum over an episode, or over rate_steps
   int32_t episode_steps = 0;       // control steps after which an episode is counted as ended; 0: never

@@ -323,6 +323,11 @@ void Collector::check(const Transition& t) const {
   check_flags("success", t.success);
   check_rows("reward", t.reward, t.valid, c.num_envs, 1);
   check_costs("cost", t.cost, c.num_envs, c.cost_dim);
+  if (t.limit) {
+    check_costs("limit", t.limit, c.num_envs, 1);
+    if (resolved_->rate_steps > 0)
+      fail(Code::kState, "limit: option cost_limit_per_step limits column 0 for every episode alike");
+  }
   for (size_t i = 0; i < resolved_->num_envs(); ++i) {
     if (t.steps && t.steps[i] < 0)
       fail(Code::kRange, "steps: row %zu is %d, which is outside the bounds", i, t.steps[i]);
@@ -355,8 +360,9 @@ void Collector::value_truncated(const Transition& t) {
     values(workspace, x, rows, workspace.out, workspace.dout);
     for (size_t i = 0; i < static_cast<size_t>(rows); ++i) {
       final_value_[env[i]] = workspace.out[i];
-      std::memcpy(final_cost_ + static_cast<size_t>(env[i]) * costs, workspace.dout + i * costs,
-                  costs * sizeof(float));
+      if (resolved_->values_costs)
+        std::memcpy(final_cost_ + static_cast<size_t>(env[i]) * costs, workspace.dout + i * costs,
+                    costs * sizeof(float));
     }
   }
 }
@@ -433,15 +439,18 @@ void Collector::count_row(const Transition& t, int32_t env, const float* cost, i
 void Collector::end_row(const Transition& t, int32_t env, float discount, float* sample_cost) {
   const auto e = static_cast<size_t>(env);
   const bool terminated = flag(t.terminated, e, false);
+  double charge[kMaxCosts] = {};
+  // An episode with a limit of its own: what its sum is beyond that it is beyond the agent's.
+  const double own = t.limit && limits_first() ? resolved_->limit[0] - static_cast<double>(t.limit[e]) : 0;
   if (!terminated && !flag(t.truncated, e, false)) {
     if (resolved_->episode_steps == 0 || episodes_.length(env) < resolved_->episode_steps) return;
     ++cut_;
-    return episodes_.finish(env, false, nullptr);
+    charge[0] = own;
+    return episodes_.finish(env, false, charge);
   }
-  double charge[kMaxCosts];
-  const bool charged = terminated && shared().terminal_cost;
-  if (charged) charge_fall(env, discount, sample_cost, charge);
-  episodes_.finish(env, terminated, charged ? charge : nullptr);
+  if (terminated && shared().terminal_cost) charge_fall(env, discount, sample_cost, charge);
+  charge[0] += own;
+  episodes_.finish(env, terminated, charge);
   noise_.end_episode(env);
 }
 
@@ -467,6 +476,7 @@ void Collector::record_row(const Transition& t, int32_t env) {
     r.discount[at] = over ? 0 : discount;
   }
   end_row(t, env, discount, limited);
+  for (size_t i = 0; !resolved_->values_costs && i < costs; ++i) r.reward[at] -= charge_[i] * limited[i];
   if (r.valid[at]) return;
   r.reward[at] = r.discount[at] = 0;
   std::fill_n(limited, costs, 0.0f);
@@ -581,7 +591,7 @@ void Collector::begin_estimate(const float* last_obs) {
 }
 
 bool Collector::estimate_on() {
-  if (column_ < rollout_.num_costs) {
+  if (column_ < (resolved_->values_costs ? rollout_.num_costs : 0)) {
     const SharedOptions& o = shared();
     estimate_advantage(rollout_, column_++,
                        {o.lambda, o.cost_lambda, o.standardize_reward_adv, o.standardize_cost_adv},

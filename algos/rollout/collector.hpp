@@ -77,6 +77,9 @@ class Collector {
   // Of the values that acted, over all ranks' rows; column 0 of the costs'.
   double mean_value(bool of_cost) const;
 
+  // What a unit of limited cost i takes off the reward of the rows to come, where costs have no critic.
+  void set_charge(int32_t i, double weight) { charge_[i] = static_cast<float>(weight); }
+
   const Rollout& rollout() const { return rollout_; }
   Episodes& episodes() { return episodes_; }
   const Episodes& episodes() const { return episodes_; }
@@ -102,6 +105,7 @@ class Collector {
 
  private:
   const SharedOptions& shared() const { return resolved_->shared; }
+  bool limits_first() const { return resolved_->num_limited > 0 && resolved_->column[0] == 0; }
   void values(const Workspace& workspace, const float* x, int32_t rows, float* value,
               float* cost_value) const;
   // A decision for action, or with the actions `given`; the other one is null.
@@ -155,6 +159,7 @@ class Collector {
   // What is learned from: [num_envs] and [num_envs][cost_dim], the transition's own or scaled in scaled_*.
   const float *reward_ = nullptr, *cost_ = nullptr;
   float *scaled_reward_ = nullptr, *scaled_cost_ = nullptr;
+  float charge_[kMaxCosts] = {};
   int64_t env_steps_ = 0, own_steps_ = 0;  // of all ranks, and this one's since they were counted
   double* moments_ = nullptr;              // [this rank's blocks][1 + 2 widest row]; none for one block alone
   size_t moments_step_ = 0;

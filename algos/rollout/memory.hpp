@@ -8,6 +8,7 @@
 // state of its own, which advances with each decision and ends only by `forget`: evaluating does not disturb what is
 // collected.
 #pragma once
+#include "algos/core/state_io.hpp"
 #include "algos/rollout/rollout.hpp"
 
 namespace rdm {

@@ -153,6 +153,8 @@ constexpr char kPlay[] = "Train and play", kLook[] = "Look", kLists[] = "Tasks, 
                kFiles[] = "Files and this program";
 constexpr Command kCommands[] = {
     {"train", add_train, kPlay, "redman train --task hand_over_safe_finger --steps 1e6 --out runs/first"},
+    {"sweep", add_sweep, kPlay,
+     "redman sweep --tasks ball_run,car_run --algos ppo_lag,cpo --seeds 0..4 --out runs/sweep"},
     {"eval", add_eval, kPlay, "redman eval --policy runs/first --episodes 100"},
     {"rollout", add_rollout, kPlay, "redman rollout --policy runs/first --episodes 10 --record rollout.npz"},
     {"plan", add_plan, kPlay, "redman plan --task hand_over_safe_finger --method cem --samples 128"},

@@ -93,6 +93,9 @@ typedef struct rdm_transition { /* what followed the last sampled actions; a row
                                * NULL: none */
   uint64_t generation;        /* rdm_policy_info.generation of the policy that sampled; 0: not
                                * checked */
+  const float *limit;         /* [num_envs] limit on column 0 that the episode of this row has for
+                               * itself, read where it ends: what is held against cost_limit is then
+                               * the mean of cost - limit + cost_limit; NULL: cost_limit alone */
 } rdm_transition;
 /* Records what followed the last sampled act. STATE without such an act, or when the horizon is
  * full. ARGUMENT for a flag that is neither 0 nor 1, or a cost that is not finite or below 0, in

@@ -231,6 +231,9 @@ bool Pool::guard_at(int32_t i, Guard* guard, float* normal) const {
 int32_t Pool::repeat() const {
   return impl_->repeat;
 }
+double Pool::limit(int32_t env) const {
+  return impl_->task->limit(impl_->slots[env].task_state);
+}
 int32_t Pool::taken(int32_t env) const {
   return impl_->slots[env].taken;
 }

@@ -84,6 +84,7 @@ class Pool {
   // As Task::guard_at; none where actions are delayed, as what is done is then not what is asked for.
   bool guard_at(int32_t i, Guard* guard, float* normal) const;
   int32_t repeat() const;            // control steps of one step, at most
+  double limit(int32_t env) const;   // as Task::limit of the world's episode
   int32_t taken(int32_t env) const;  // control steps of the world's last step; 0: it was a reset
   // Sum over these of a cost's measured value where it is above 0.
   double magnitude(int32_t env, int32_t cost) const;

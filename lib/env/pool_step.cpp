@@ -140,7 +140,7 @@ const char* Pool::task_error(int32_t env) const {
 void Pool::Impl::renew(int32_t env) {
   Reader in(pristine, pristine_size, "pristine world");
   slots[env].world->take(in);
-  std::memset(slots[env].task_state, 0, task->state_bytes());
+  std::memset(slots[env].task_state, 0, task->state_bytes() - task->kept_bytes());
 }
 
 Code Pool::Impl::begin_episode(int32_t env) {

@@ -27,7 +27,7 @@ uint64_t ResolvedPoolConfig::hash_options() const {
       if (value.drawn()) hash = hash_bytes(&value.high, sizeof value.high, hash);
     }
   }
-  return hash_disturbance(options, hash);
+  return hash_budget(options, hash_disturbance(options, hash));
 }
 
 // A first look finds what chooses other rows (the robots); with those in place all keys must be known.
@@ -49,6 +49,8 @@ void ResolvedPoolConfig::read_options(const PoolConfig& c) {
   specs = repeat_options(&count);
   options.add_table(specs, count);
   specs = disturb_options(&count);
+  options.add_table(specs, count);
+  specs = budget_options(&count);
   options.add_table(specs, count);
   options.set_all(c.options, c.num_options, c.settings, info->name);
 }
@@ -81,19 +83,24 @@ ResolvedPoolConfig::ResolvedPoolConfig(const PoolConfig& c) : config(c) {
   struct Undo {  // what a constructor that fails leaves
     ResolvedPoolConfig* made;
     ~Undo() {
-      if (made) host_delete(made->config.hooks, made->table);
+      if (!made) return;
+      host_delete(made->config.hooks, made->budget);
+      host_delete(made->config.hooks, made->table);
     }
   } undo{this};
   read_options(c);
   repeat = repeat_from(options, *info);
   options_hash = hash_options();
-  task = make_task(*info, options, config.hooks, config.user);
+  const Budget limits = budget_from(options, *info);
+  own_task = make_task(*info, options, config.hooks, config.user);
+  task = own_task.get();
   sense = sense_from(options, *info, *task);
   if (info->source) {  // another task may have its name by now
-    const size_t bytes = task->state_bytes();
+    const size_t bytes = own_task->state_bytes();
     options_hash = hash_bytes(&bytes, sizeof bytes, options_hash);
   }
   disturbance = disturbance_from(options, *task, info->name);
+  if (limits.any()) task = budget = host_new<BudgetTask>(config.hooks, *own_task, limits);
   obs_dim = rdm::obs_dim(*task);
   action_dim = task->action_dim();
   cost_dim = info->num_costs;
@@ -104,6 +111,7 @@ ResolvedPoolConfig::ResolvedPoolConfig(const PoolConfig& c) : config(c) {
 }
 
 ResolvedPoolConfig::~ResolvedPoolConfig() {
+  host_delete(config.hooks, budget);
   host_delete(config.hooks, table);
 }
 

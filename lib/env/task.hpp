@@ -84,6 +84,7 @@ class Task {
   virtual const Vector<FieldSpec>& fields() const = 0;  // in order; offsets are the running sums
   virtual const char* action_order() const = 0;         // joins the layout hash
   virtual size_t state_bytes() const = 0;               // of the task's per-world struct
+  virtual size_t kept_bytes() const { return 0; }       // at its end, which a reset does not zero before
   // Error(kFormat) for a per-world struct that no world of this task can have: an index out of range, a
   // number that is not finite. Called for the bytes of a saved state before anything reads them; zeroed bytes
   // (a world that was never reset) and whatever reset, control and judge leave pass.
@@ -123,6 +124,10 @@ class Task {
   // Row i of the ways to share the action out between the agents of a team: a key "groups.NAME", and the list as agents
   // read it (option groups). Both live as long as the task. False: there are no more.
   virtual bool group_set_at(int32_t, const char**, const char**) const { return false; }
+  // The limit on column 0 that each episode draws for itself, of a world's state; null: what stands for all. Without
+  // such draws the limit of all episodes, -1: that of the costs' table.
+  virtual bool draws_limit() const { return false; }
+  virtual double limit(const void*) const { return -1; }
   // Entry of the action that drives a joint of the scene; -1: none, or nobody knows.
   virtual int32_t action_of(int32_t) const { return -1; }
 };

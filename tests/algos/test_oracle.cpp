@@ -1,9 +1,12 @@
-// Losses, gradients and a Fisher product against torch's autograd: tests/oracle/losses.py makes the vectors.
+// Losses, gradients and a Fisher product against torch's autograd, and CUP's projection against complex steps:
+// tests/oracle/losses.py and projection.py make the vectors.
+#include "algos/lagrange/cup.hpp"
 #include "algos/lagrange/focops.hpp"
 #include "algos/penalty/p3o.hpp"
 #include "algos/trust_region/trust_region.hpp"
 #include "learner_bench.hpp"
 #include "oracle_losses.hpp"
+#include "oracle_projection.hpp"
 
 using namespace rdm;
 using namespace rdm::test;
@@ -99,6 +102,22 @@ TEST(Oracle, LossesAndGradients) {
   o.expect(clip, oracle::kPpoLag, "ppo_lag");
   o.mix(1 / (1 + kNu), 0, -kNu / (1 + kNu));
   o.expect(clip, oracle::kSplit, "split");
+}
+
+TEST(Oracle, Projection) {
+  Oracle o;
+  std::vector<float> half(kRows * kAct), half_std(kAct);
+  const float shift[] = {-0.125f, 0.0625f, 0.03125f};
+  for (size_t i = 0; i < kRows; ++i) {
+    const std::vector<double> now = o.network(o.params(), Networks::kActor, i);
+    for (size_t j = 0; j < kAct; ++j)
+      half[i * kAct + j] = static_cast<float>(now[j] + 0.25 * wave(i * kAct + j, 13));
+  }
+  for (size_t j = 0; j < kAct; ++j) half_std[j] = o.nets.params[j] + shift[j];
+  ProjectionLoss loss;
+  loss.weight[0] = 0.6f, loss.weight[1] = 0.25f;
+  loss.mean = half.data(), loss.mean_step = kAct, loss.log_std = half_std.data();
+  o.expect(loss, oracle::kProjection, "projection");
 }
 
 TEST(Oracle, FisherProduct) {

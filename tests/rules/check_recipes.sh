@@ -37,7 +37,7 @@ recipe() {
   printf '%s\n%s\n' "$folder/$name.cpp" "$list" >> "$work/sources"
 }
 recipe tasks/README.md "A task" tasks/closed_form fenced_walk task.cpp kFencedWalk TaskInfo
-recipe algos/README.md "An algorithm" algos/lagrange crpo algorithm.cpp kCrpo AlgoRow
+recipe algos/README.md "An algorithm" algos/lagrange priced algorithm.cpp kPriced AlgoRow
 recipe lib/README.md "A robot" lib/robot/tables one_finger robot.cpp kOneFinger Robot
 [ $status -eq 0 ] || exit 1
 
@@ -94,11 +94,11 @@ if [ -x "$build/bin/redman" ] && [ -f "$build/redman.map" ]; then
   tables check > "$work/stale" && { echo "the pages' tables do not miss the recipes' rows"; status=1; }
   tables > "$work/written" || { cat "$work/written"; status=1; }
   tables check || status=1
-  for row in 'README.md:[`crpo`](examples/manual/algorithms/crpo.md)' 'examples/manual/tasks/README.md:[`fenced_walk`](fenced_walk.md)' \
+  for row in 'examples/manual/algorithms/README.md:[`priced`](priced.md)' 'examples/manual/tasks/README.md:[`fenced_walk`](fenced_walk.md)' \
     'examples/robots/README.md:`one_finger`'; do
     grep -qF "${row#*:}" "$tree/${row%%:*}" || { echo "${row%%:*} got no row of ${row#*:}"; status=1; }
   done
-  for page in tasks/fenced_walk algorithms/crpo; do
+  for page in tasks/fenced_walk algorithms/priced; do
     grep -q '^<!-- end of options -->$' "$tree/examples/manual/$page.md" || { echo "examples/manual/$page.md was not begun"; status=1; }
   done
 fi

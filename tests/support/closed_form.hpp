@@ -19,17 +19,18 @@ inline double deviation(Agent& a) {
   return std::exp(static_cast<double>(t.data[0]));
 }
 
-// One step per episode, r = -(a - 2)^2, c = a, deviation 0.5 fixed; limit 1: mean 1, return -1.25.
+// One step per episode, r = -(a - 2)^2, c = a, deviation 0.5 fixed; limit 1: mean 1, return -1.25. As no cost may
+// be below 0, the agent gets it, and its limit, with kShift more.
 class BanditWorld {
  public:
   static constexpr int kObs = 1;
-  static constexpr double kLimit = 1, kBest = -1.25, kFree = -0.25;
+  static constexpr double kLimit = 1, kBest = -1.25, kFree = -0.25, kShift = 3;
   explicit BanditWorld(size_t envs, uint64_t) : envs_(envs) {}
   void start(float* obs) { std::fill_n(obs, envs_, 1.0f); }
   void step(const float* action, float* reward, float* cost, uint8_t* terminated, uint8_t*, float*) {
     for (size_t i = 0; i < envs_; ++i) {
       reward[i] = -(action[i] - 2) * (action[i] - 2);
-      cost[i] = action[i];
+      cost[i] = action[i] + static_cast<float>(kShift);
       terminated[i] = 1;
     }
   }
@@ -50,7 +51,7 @@ class BanditWorld {
 class TwoStateWorld {
  public:
   static constexpr int kObs = 2;
-  static constexpr double kLimit = 2.5, kBest = 9.687058, kFree = 17.912088;
+  static constexpr double kLimit = 2.5, kBest = 9.687058, kFree = 17.912088, kShift = 0;
   TwoStateWorld(size_t envs, uint64_t seed) : state_(envs), stream_(seed, 0, Purpose::kTest) {}
   void start(float* obs) { observe(obs); }
   void step(const float* action, float* reward, float* cost, uint8_t* terminated, uint8_t*, float* obs) {
@@ -101,7 +102,7 @@ class TwoStateWorld {
 class LqrWorld {
  public:
   static constexpr int kObs = 1;
-  static constexpr double kLimit = 1, kBest = -1.583058, kFree = -1.52626;
+  static constexpr double kLimit = 1, kBest = -1.583058, kFree = -1.52626, kShift = 0;
   static constexpr int kSteps = 20;
   LqrWorld(size_t envs, uint64_t seed) : x_(envs), t_(envs), stream_(seed, 0, Purpose::kTest) {}
   void start(float* obs) {

@@ -19,7 +19,7 @@ WHAT IS THERE. help(redman.Pool) and so on tell more.
     learners        Agent, Epoch, CostLimits, Options; Recording, CloneReport; Ranks
     policies        Policy, Actor, Origin, HoldWarning; Planner, PlanInfo; Shield, ShieldRow, project
     teams           groups, Group; Policy.groups, Policy.group; algorithms mappo, mappo_lag, happo, macpo
-    runs            train, Run; callbacks, Callback, Training; evaluate, Evaluation, Player; compare,
+    runs            train, sweep, Run; callbacks, Callback, Training; evaluate, Evaluation, Player; compare,
                     Comparison; curve, Curve, Curves; stats;
                     Episode; view, Window
     your own        Rows, Costs: rewards and costs of train and evaluate; Task, RowTask, Verdict, Worlds, SceneBuilder; Robot.create,
@@ -80,6 +80,7 @@ from ._recording import Recording
 from ._robot import Note, Poses, Robot, robot, robots
 from ._scene import SceneBuilder
 from ._shield import Shield, ShieldRow, project
+from ._sweep import sweep
 from ._teach import CloneReport
 from ._team import Group, groups
 from ._run import Run
@@ -103,7 +104,7 @@ __all__ = [
     "load", "load_object", "load_robot", "load_task", "make", "StateError", "Status", "Task", "TaskInfo", "Training", "UnsupportedError",
     "UsageError", "Verdict", "VersionError", "Window", "Worlds",
     "make_vec", "memory", "objects", "planner_options", "project", "robot", "robots", "sample_furthest", "shield_options",
-    "spec", "stats", "task", "tasks", "train", "version", "view",
+    "spec", "stats", "sweep", "task", "tasks", "train", "version", "view",
 ]
 
 moved(globals(), __all__)  # what is public is of this module, in texts and in pickles

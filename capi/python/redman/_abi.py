@@ -1778,6 +1778,8 @@ class rdm_transition(Structure):
     steps: [num_envs] control steps in this decision; NULL: action_repeat
     status: [num_envs] RDM_STATUS_* of the decision, for the epoch's counts; NULL: none
     generation: rdm_policy_info.generation of the policy that sampled; 0: not checked
+    limit: [num_envs] limit on column 0 that the episode of this row has for itself, read where it ends: what is
+        held against cost_limit is then the mean of cost - limit + cost_limit; NULL: cost_limit alone
     """
 
     struct_size: int
@@ -1792,6 +1794,7 @@ class rdm_transition(Structure):
     steps: int | None
     status: int | None
     generation: int
+    limit: int | None
     _fields_ = [
         ("struct_size", c_uint32),
         ("reserved", c_uint32),
@@ -1805,6 +1808,7 @@ class rdm_transition(Structure):
         ("steps", c_void_p),
         ("status", c_void_p),
         ("generation", c_uint64),
+        ("limit", c_void_p),
     ]
 
 
@@ -4384,6 +4388,7 @@ ROWS: dict[str, dict[str, Rows]] = {
         "success": Rows("uint8", ("num_envs",)),
         "steps": Rows("int32", ("num_envs",)),
         "status": Rows("uint32", ("num_envs",)),
+        "limit": Rows("float32", ("num_envs",)),
     },
     "rdm_sensors": {
         "rgb": Rows("uint8", ("num_envs", "num_cameras", "height", "width", "3")),
@@ -5629,10 +5634,12 @@ FUNCTIONS: dict[str, Function] = {
         """),
     "rdm_policy_act_state": Function(
         c_int32, {"p": c_void_p, "obs": c_void_p, "state": c_void_p, "rows": c_int32, "noise": c_void_p, "action": c_void_p, "scratch": c_void_p, "scratch_bytes": c_size_t},
-        {"state": Rows("float32", ("rows", "state_dim"))}, True,
-        """As rdm_policy_act, for any policy that reads no points: state [rows][state_dim] is read, and
-        becomes that after the decision; NULL only where state_dim is 0. ARGUMENT for a state that is not
-        finite; the state stays as it is on errors, except where the network overflows.
+        {"obs": Rows("float32", ("rows", "obs_dim")), "state": Rows("float32", ("rows", "state_dim")), "noise": Rows("float32", ("rows", "action_dim")), "action": Rows("float32", ("rows", "action_dim"))}, True,
+        """As rdm_policy_act, of obs [rows][obs_dim], noise [rows][action_dim] or NULL, action
+        [rows][action_dim] and scratch [scratch_bytes], for any policy that reads no points: state
+        [rows][state_dim] is read, and becomes that after the decision; NULL only where state_dim is 0.
+        ARGUMENT for a state that is not finite. On errors the state stays as it is, except where the
+        network overflows.
         """),
     "rdm_agent_forget": Function(
         c_int32, {"a": c_void_p, "mode": c_int32, "mask": c_void_p},

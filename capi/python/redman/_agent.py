@@ -218,14 +218,16 @@ class Agent(Taught, Hinted):
             self._check(lib.rdm_agent_forget(self._a, _MODES[mode], None if chosen is None else chosen.ctypes.data))
 
     def record(self, reward: Any, cost: Any = None, terminated: Any = None, truncated: Any = None,
-               final_obs: Any = None, valid: Any = None, success: Any = None, steps: Any = None) -> None:
+               final_obs: Any = None, valid: Any = None, success: Any = None, steps: Any = None,
+               limit: Any = None) -> None:
         """Records what followed the last sampled actions, a row per world. None means: no ends, all rows are valid, no
         success, what follows a truncation is valued 0, a decision took as many control steps as option action_repeat says.
 
-        reward and cost are sums over the decision, final_obs is read where truncated, steps are control steps.
+        reward and cost are sums over the decision, final_obs is read where truncated, steps are control steps. limit: the
+        limit on column 0 that each world's episode has for itself, instead of cost_limit.
         """
         self._record("record", reward=reward, cost=cost, terminated=terminated, truncated=truncated, final_obs=final_obs,
-                     valid=valid, success=success, steps=steps)
+                     valid=valid, success=success, steps=steps, limit=limit)
 
     def _record(self, call: str, **said: Any) -> None:
         transition, kept = self._transition(call, **said)
@@ -235,7 +237,7 @@ class Agent(Taught, Hinted):
 
     def put(self, obs: Any, action: Any, reward: Any, cost: Any = None, terminated: Any = None, truncated: Any = None,
             final_obs: Any = None, valid: Any = None, success: Any = None, steps: Any = None,
-            generation: int = 0) -> None:
+            generation: int = 0, limit: Any = None) -> None:
         """Records a decision that was taken elsewhere, instead of act and record: obs, the actions that the policy of this
         epoch sampled for them, not clipped, and what followed, as in record.
 
@@ -244,7 +246,7 @@ class Agent(Taught, Hinted):
         rows, actions = self._given("rdm_agent_put", "obs", obs), self._given("rdm_agent_put", "action", action)
         transition, kept = self._transition("put", reward=reward, cost=cost, terminated=terminated,
                                             truncated=truncated, final_obs=final_obs, valid=valid, success=success,
-                                            steps=steps)
+                                            steps=steps, limit=limit)
         transition.generation = generation
         with self._lock:
             self._check(lib.rdm_agent_put(self._a, rows.ctypes.data, actions.ctypes.data, byref(transition)))

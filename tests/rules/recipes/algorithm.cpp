@@ -1,38 +1,40 @@
-// CRPO on PPO's step (Xu, Liang and Lan 2021, algorithm 1): while an episode's cost is above its limit the
-// policy step lowers that cost alone, else it raises the reward.
+// PPO with a price: the reward's advantage minus each limited cost's times a weight that stays. It keeps no limit by
+// itself, and is what a multiplier is compared with.
 #include "algos/algo_registry.hpp"
+#include "algos/core/option_tables.hpp"
 #include "algos/first_order/ppo.hpp"
 #include "algos/lagrange/cost_weighted.hpp"
 
 namespace rdm {
 namespace {
 
-class Rectify {
+struct PriceOptions {
+  double price;
+};
+constexpr auto kPriceRows = option_rows<PriceOptions>(row<&PriceOptions::price>(
+    basic(number_option("cost_price", 1, 0, 1e6, "weight of each limited cost's advantage", true))));
+
+class Price {
  public:
-  explicit Rectify(const ResolvedAgentConfig&) {}
-  void step(const JudgedCosts& costs, int32_t) {
-    if (!costs.any_known()) return;
-    violated_ = -1;
-    for (int32_t i = 0; i < costs.count && violated_ < 0; ++i)
-      if (costs.known[i] && costs.excess(i) > 0) violated_ = i;
-  }
-  double weight(int32_t i) const { return i == violated_ ? 1 : 0; }
-  Mix mix() const { return Mix::kDifference; }  // (1 - sum w) A_r - sum w A_c
+  explicit Price(const ResolvedAgentConfig& resolved) { read_live(resolved.options); }
+  void step(const JudgedCosts&, int32_t) {}
+  double weight(int32_t) const { return options_.price; }
+  Mix mix() const { return Mix::kSum; }  // (A_r - sum w A_c) / (1 + sum w)
   bool split() const { return false; }
-  void read_live(const Options&) {}
-  void visit(StateIo& io) {
-    io.section("RECT");
-    io.integer(violated_, -1, kMaxCosts - 1);
-  }
+  void read_live(const Options& options) { options_ = kPriceRows.read(options); }
+  void visit(StateIo&) {}
 
  private:
-  int32_t violated_ = -1;  // the limit that the policy step serves, -1: none
+  PriceOptions options_{};
 };
+
+struct PricedOptions : PpoOptions, PriceOptions {};
+constexpr auto kPricedRows = option_rows<PricedOptions>(kPpoRows, kPriceRows);
 
 }  // namespace
 
-constinit const AlgoRow kCrpo = make_algo_row<CostWeighted<Ppo, Rectify>>(
-    "crpo", "PPO that lowers a cost alone while it is over its limit (Xu et al. 2021)", kPpoRows,
+constinit const AlgoRow kPriced = make_algo_row<CostWeighted<Ppo, Price>>(
+    "priced", "PPO on the reward's advantage minus each cost's times a fixed weight", kPricedRows,
     Costs::kAny);
 
 }  // namespace rdm

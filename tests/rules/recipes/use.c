@@ -30,7 +30,7 @@ int main(void) {
   }
   TRY(rdm_agent_config_init(&a, sizeof a));
   TRY(rdm_agent_config_for_pool(&a, pool));
-  a.algo = "crpo";
+  a.algo = "priced";
   TRY(rdm_agent_create(&agent, &a));
   memset(&epoch, 0, sizeof epoch);
   epoch.struct_size = sizeof epoch;

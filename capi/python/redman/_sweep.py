@@ -1,0 +1,53 @@
+"""sweep: tasks x algorithms x seeds x options, each a run of its own, by the command-line tool."""
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+from typing import Any, Iterable, Mapping, Optional, Sequence, Union
+
+from ._error import ArgumentError, UnsupportedError
+from ._tool import tool_path
+
+Words = Union[str, Iterable[str]]
+Plain = Union[str, float, bool]
+
+
+def _joined(words: Union[str, Iterable[Any]]) -> str:
+    return words if isinstance(words, str) else ",".join(str(w) for w in words)
+
+
+def _text(value: Plain) -> str:
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def sweep(tasks: Words, algos: Words = "ppo_lag", seeds: Union[str, int, Iterable[int]] = 5, *, steps: float, out: Union[str, "os.PathLike[str]"],
+          options: Optional[Mapping[str, Plain]] = None, vary: Optional[Mapping[str, Sequence[Plain]]] = None,
+          cost_limit: Optional[float] = None, envs: int = 64, jobs: int = 0, minutes: float = 0) -> dict[str, Any]:
+    """Trains tasks x algorithms x seeds x the values of vary, and returns what the runs came to.
+
+        done = redman.sweep(["ball_run", "car_run"], ["ppo_lag", "cpo"], seeds=5, steps=1e6, out="runs/sweep")
+        done["rows"][0]["return_iqm"], done["rows"][0]["return_interval"]
+
+    seeds: their number, or each of them. options are those of task and algorithm for all runs; vary, {key: values}, makes a
+    configuration of each value. jobs run at a time, 0: one for each core. minutes: time after which runs are stopped. The same
+    call goes on with what was stopped, in any way, and does nothing again that is done. A wrong setting is an ArgumentError
+    before anything starts. The folder has runs of the tool's form, and a table in sweep.md.
+    """
+    tool = tool_path()
+    if tool is None:
+        raise UnsupportedError("a sweep is made by the command redman, which is not in this package, not on PATH, nor where REDMAN_TOOL says")
+    listed = f"0..{seeds - 1}" if isinstance(seeds, int) else _joined(seeds)
+    words = ["sweep", "--json", "--tasks", _joined(tasks), "--algos", _joined(algos), "--seeds", listed, "--steps", repr(float(steps)),
+             "--out", os.fspath(out), "--envs", str(envs), "--jobs", str(jobs), "--minutes", repr(float(minutes))]
+    for key, value in (options or {}).items():
+        words += ["--set", f"{key}={_text(value)}"]
+    for key, values in (vary or {}).items():
+        words += ["--vary", f"{key}={_joined(_text(v) for v in values)}"]
+    if cost_limit is not None:
+        words += ["--cost-limit", repr(float(cost_limit))]
+    done = subprocess.run([tool, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, stdin=subprocess.DEVNULL)
+    if done.returncode:
+        said = done.stderr.strip() or done.stdout.strip() or f"redman sweep ended with {done.returncode}"
+        raise ArgumentError(said.split("redman: ")[-1])
+    return dict(json.loads(done.stdout))

@@ -1,0 +1,80 @@
+"""Policies that remember: act takes a state and gives the next one, actors and predict keep it, agents forget."""
+import unittest
+
+import numpy as np
+
+import redman
+
+SETTINGS = {"history": {"history": 4, "hidden": 8}, "gru": {"memory": "gru:6", "hidden": 8}}
+
+
+def agent_of(settings, envs=3):
+    pool = redman.Pool("recall", num_envs=envs, seed=2)
+    pool.reset()
+    agent = redman.Agent(pool, algo="ppo", seed=1, options={**settings, "horizon": 20})
+    agent.rollout(pool)
+    return pool, agent
+
+
+class Memory(unittest.TestCase):
+    def test_a_state_goes_in_and_comes_out(self):
+        for name, settings in SETTINGS.items():
+            with self.subTest(name):
+                _, agent = agent_of(settings)
+                policy = agent.policy()
+                self.assertGreater(policy.info.state_dim, 0)
+                rng = np.random.default_rng(0)
+                state, alone = policy.start(3), policy.start()
+                self.assertEqual(state.shape, (3, policy.info.state_dim))
+                for _ in range(6):
+                    obs = rng.standard_normal((3, 2)).astype(np.float32)
+                    before = state.copy()
+                    action, following = policy.act(obs, state)
+                    np.testing.assert_array_equal(state, before)
+                    one, alone = policy.act(obs[0], alone)
+                    np.testing.assert_array_equal(np.asarray(one), np.asarray(action)[0])
+                    state = following
+                np.testing.assert_array_equal(state[0], alone)
+                with self.assertRaisesRegex(redman.ArgumentError, "policy.start"):
+                    policy.act(obs)
+                with self.assertRaisesRegex(redman.ArgumentError, "does not fit"):
+                    policy.act(obs, state[:2])
+                with self.assertRaisesRegex(redman.StateError, "rdm_policy_act_state"):
+                    policy.sample(obs)
+
+    def test_actors_and_predict_keep_it(self):
+        for name, settings in SETTINGS.items():
+            with self.subTest(name):
+                _, agent = agent_of(settings)
+                policy = agent.policy()
+                pool = redman.Pool("recall", num_envs=3, seed=5)
+                pool.reset()
+                actor, kept, state = policy.actor(pool), None, policy.start(3)
+                begun = np.ones(3, bool)
+                for _ in range(50):
+                    obs = pool.obs.copy()
+                    state[begun] = 0
+                    wanted, state = policy.act(obs, state)
+                    predicted, kept = policy.predict(obs, kept, begun)
+                    action = actor()
+                    np.testing.assert_array_equal(np.asarray(wanted), np.asarray(action))
+                    np.testing.assert_array_equal(np.asarray(wanted), np.asarray(predicted))
+                    pool.step(action)
+                    begun = np.asarray(pool.terminated | pool.truncated, bool)
+
+    def test_an_agent_forgets(self):
+        _, agent = agent_of(SETTINGS["gru"])
+        obs = np.ones((3, 2), np.float32)
+        agent.forget("mean")
+        first = agent.act(obs, "mean").copy()
+        self.assertFalse(np.array_equal(agent.act(obs, "mean"), first))
+        agent.forget("mean", [True, False, True])
+        again = agent.act(obs, "mean")
+        np.testing.assert_array_equal(again[[0, 2]], first[[0, 2]])
+        self.assertFalse(np.array_equal(again[1], first[1]))
+        with self.assertRaisesRegex(redman.ArgumentError, "mask"):
+            agent.forget("mean", [True])
+
+
+if __name__ == "__main__":
+    unittest.main()
