@@ -203,8 +203,8 @@ void init_networks(const Networks& n, const ResolvedAgentConfig& resolved) {
     Stream stream(resolved.config.seed, static_cast<uint32_t>(i), Purpose::kInit);
     const double last = i == Networks::kActor ? resolved.shared.last_layer_scale : 1;
     if (i > 0 || !n.num_groups)
-      recurrent_init({n.shape[i], i == Networks::kActor ? n.gru : GruShape()}, stream, static_cast<float>(last),
-                     n.net(i));
+      recurrent_init({n.shape[i], i == Networks::kActor ? n.gru : GruShape()}, stream,
+                     static_cast<float>(last), n.net(i));
   }
   const auto last_scale = static_cast<float>(resolved.shared.last_layer_scale);
   for (int32_t g = 0; g < n.num_groups; ++g) {
@@ -232,7 +232,8 @@ void init_networks(const Networks& n, const ResolvedAgentConfig& resolved) {
                   0, n.action_dim);
   for (int32_t i = 0; i < n.num_groups; ++i) {
     const ActorGroup& g = n.group[i];
-    first_actions(n.net(Networks::kActor) + g.offset + g.shape.bias_offset(g.shape.num_hidden), g.first, g.count);
+    first_actions(n.net(Networks::kActor) + g.offset + g.shape.bias_offset(g.shape.num_hidden), g.first,
+                  g.count);
   }
 }
 

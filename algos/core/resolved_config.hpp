@@ -58,7 +58,8 @@ struct ResolvedAgentConfig {
   int32_t num_groups() const { return static_cast<int32_t>(groups.size()); }
   // Of the actor's networks, its eyes apart.
   size_t actor_params() const {
-    return groups.empty() ? RecurrentShape{actor, gru}.num_params() : group_params(groups.data(), num_groups());
+    return groups.empty() ? RecurrentShape{actor, gru}.num_params()
+                          : group_params(groups.data(), num_groups());
   }
   bool sees() const { return eyes.points > 0; }
   // The actor's network gives log deviations behind its means.

@@ -52,9 +52,9 @@ struct ActScratch {
   MlpScratch mlp;
   RecurrentScratch memory;
   PointNetScratch eyes;
-  float* obs = nullptr;                    // what the network sees: normalised, with features
-  float* row = nullptr;                    // with features or a history: entries before they stand beside these
-  float* head = nullptr;                   // the network's outputs, with state_std
+  float* obs = nullptr;   // what the network sees: normalised, with features
+  float* row = nullptr;   // with features or a history: entries before they stand beside these
+  float* head = nullptr;  // the network's outputs, with state_std
   float *seen = nullptr, *part = nullptr;  // of one group: what it sees and gives
   size_t bytes = 0;
 };
@@ -652,12 +652,12 @@ void write_policy(Writer& out, const PolicyView& view) {
     Vector<float> state(sz(view.state_dim()));
     act_example(view, obs.data(), cloud, action.data(), align_scratch(memory.data()), state.data());
   }
-  out.begin_file(kPolicyMagic, view.state_dim() ? 7
-                               : view.num_groups  ? 6
-                               : eyes.points    ? (eyes.color ? 5 : 4)
-                               : view.columns   ? 3
-                               : view.state_std ? 2
-                                                : 1);
+  out.begin_file(kPolicyMagic, view.state_dim()  ? 7
+                               : view.num_groups ? 6
+                               : eyes.points     ? (eyes.color ? 5 : 4)
+                               : view.columns    ? 3
+                               : view.state_std  ? 2
+                                                 : 1);
   out.begin_section("META");
   out.value(view.clip);
   out.value(view.action_repeat);

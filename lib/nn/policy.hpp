@@ -28,8 +28,8 @@ struct PolicyView {
       actor;  // in: entries that it sees; out: action_dim, or with state_std twice that, log deviations last
   // Networks of their own, each of its entries of the action: `actor` is the shape of all together, which sees each
   // entry of the row, and params are theirs, one behind the other. None: it is one network.
-  const ActorGroup* group = nullptr;   // [num_groups]
-  int32_t num_groups = 0;              // 0, or 2 to kMaxGroups
+  const ActorGroup* group = nullptr;  // [num_groups]
+  int32_t num_groups = 0;             // 0, or 2 to kMaxGroups
   // What it remembers, of a row of a batch, is its state, state_dim() numbers, zeros at first: the state of the GRU
   // before its last layer, or the history entries of its last `history` - 1 decisions as the network saw them,
   // newest first, which stand behind the entries of the row.
