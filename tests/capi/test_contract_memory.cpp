@@ -48,7 +48,9 @@ struct Kept {
 
 // Row t of an episode of world e.
 std::vector<float> row(int t, int e) {
-  return {std::sin(0.7f * t + e), std::cos(1.3f * t), 0.1f * static_cast<float>(t * (e + 1) % 7)};
+  const auto at = static_cast<float>(t);
+  return {std::sin(0.7f * at + static_cast<float>(e)), std::cos(1.3f * at),
+          0.1f * static_cast<float>(t * (e + 1) % 7)};
 }
 
 TEST(ContractMemory, RowsTogetherAndOneByOneActAlike) {
