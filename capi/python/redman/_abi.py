@@ -857,7 +857,7 @@ class PolicyInfo(Record):
     novelty: whether Policy.novelty is available: 0, 1
     generation: which network it is: the low 32 bits are the epochs that its agent had learned, the high ones a
         checksum. Data sampled by another generation are stale. 0: unknown
-    state_dim: numbers that it remembers of each world, for rdm_policy_act_state; 0: it has no memory
+    state_dim: numbers that it remembers of each world, for Policy.act; 0: it has no memory
     """
 
     obs_dim: int
