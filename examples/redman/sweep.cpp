@@ -190,7 +190,7 @@ std::vector<std::string> command_of(const SweepFlags& flags, const Cell& c) {
 }
 
 #if !defined(_WIN32)
-void make_folders(const std::string& path) {
+void make_run_folders(const std::string& path) {
   for (size_t at = path.find('/', 1); at != std::string::npos; at = path.find('/', at + 1))
     mkdir(path.substr(0, at).c_str(), 0777);
   if (!is_folder(path)) mkdir(path.c_str(), 0777);
@@ -199,7 +199,7 @@ void make_folders(const std::string& path) {
 // Its result goes to NAME.json, what it says to NAME.log. It ends with this process.
 pid_t start(const SweepFlags& flags, const Cell& c) {
   const std::vector<std::string> words = command_of(flags, c);
-  make_folders(c.path.substr(0, c.path.rfind('/')));
+  make_run_folders(c.path.substr(0, c.path.rfind('/')));
   const std::string log = c.path + ".log", result = c.result();
   std::vector<char*> argv;
   for (const std::string& w : words) argv.push_back(const_cast<char*>(w.c_str()));
@@ -266,20 +266,20 @@ bool run_cells(const SweepFlags&, const std::vector<Cell>&, std::vector<std::str
 }
 #endif
 
-struct Row {
+struct SweepRow {
   std::string task, configuration;
   Sample returns, costs, safe;
   Json limit;
   size_t runs = 0;
 };
 
-std::vector<Row> rows_of(const std::vector<Cell>& cells) {
-  std::vector<Row> rows;
+std::vector<SweepRow> rows_of(const std::vector<Cell>& cells) {
+  std::vector<SweepRow> rows;
   for (const Cell& c : cells) {
     const std::string configuration = c.algo + (c.variant.empty() ? "" : " " + c.variant);
     if (rows.empty() || rows.back().task != c.task || rows.back().configuration != configuration)
       rows.push_back({c.task, configuration, {}, {}, {}, {}, 0});
-    Row& row = rows.back();
+    SweepRow& row = rows.back();
     ++row.runs;
     const Json json = result_of(c);
     if (json.is_null()) continue;
@@ -301,7 +301,7 @@ Report run_sweep(const SweepFlags& flags) {
                "limit", "within it"});
   Json json = {{"runs", cells.size()}, {"stopped", stopped}, {"failed", failed}, {"rows", Json::array()}};
   size_t done = 0;
-  for (const Row& r : rows_of(cells)) {
+  for (const SweepRow& r : rows_of(cells)) {
     const size_t n = r.returns.size();
     done += n;
     const std::string limit = r.limit.is_number() ? number_text(r.limit.get<double>()) : "-";
