@@ -330,8 +330,7 @@ bool Learner::advance_weigh(bool) {
   const auto costs = static_cast<size_t>(r.num_costs);
   workers_->cut(sweep_, resolved_->chunk_rows);
   workers_->each(sweep_, [&](Workspace& w, const Chunk& c) {
-    gather_obs(r, c.order, 1, c.rows, w.obs);
-    nets_->forward_actor(w.obs, r.clouds(c.order), c.rows, w.actor, w.out);
+    forward_policy(w, c.order, c.rows);
     const PolicyChunk chunk = chunk_of(w, c.order, c.rows, nullptr);
     for (size_t i = 0; i < static_cast<size_t>(c.rows); ++i) {
       const auto at = static_cast<size_t>(c.order[i]);
@@ -340,6 +339,23 @@ bool Learner::advance_weigh(bool) {
       r.gain[at] *= ratio, r.linear[at] *= ratio;
       for (size_t k = 0; k < costs; ++k) r.cost_advantage[at * costs + k] *= ratio;
     }
+  });
+  return sweep_.over();
+}
+
+Job Learner::begin_outputs(const Batch& batch, float* out) {
+  sweep_ = Sweep(batch);
+  outputs_ = out;
+  return Job::of<&Learner::advance_outputs>(this);
+}
+
+bool Learner::advance_outputs(bool) {
+  const auto width = static_cast<size_t>(nets_->shape[Networks::kActor].out);
+  workers_->cut(sweep_, resolved_->chunk_rows);
+  workers_->each(sweep_, [&](Workspace& w, const Chunk& c) {
+    forward_policy(w, c.order, c.rows);
+    for (size_t i = 0; i < static_cast<size_t>(c.rows); ++i)
+      std::copy_n(w.out + i * width, width, outputs_ + static_cast<size_t>(c.order[i]) * width);
   });
   return sweep_.over();
 }

@@ -97,6 +97,8 @@ class Learner {
   // Multiplies the advantages of the listed rows, those that the policy climbs and those of costs, by the probability
   // ratio of one group's actions: then others of the team learn from what they are worth beside its new policy.
   Job begin_weigh(const Batch& batch, int32_t group);
+  // What the actor gives for each of the listed rows, to row `order[i]` of out [samples][outputs of the actor].
+  Job begin_outputs(const Batch& batch, float* out);
   double kl(const Batch& batch) { return measure(batch).kl; }
   // Steps that were left out so far.
   int64_t skipped() const { return skipped_; }
@@ -120,6 +122,7 @@ class Learner {
   bool advance_gradient(bool whole);
   bool advance_measure(bool whole);
   bool advance_weigh(bool whole);
+  bool advance_outputs(bool whole);
   // Networks [first, last) of one chunk.
   void chunk_gradient(Workspace& workspace, const Chunk& chunk, int32_t first, int32_t last) const;
   void end_gradient();
@@ -146,8 +149,9 @@ class Learner {
   float scale_ = 1;                                 // 1 / rows of the batch
   float clip_ = 0;
   bool with_term_ = false;
-  size_t weighed_ = 0;  // group
-  Job term_;            // behind the rows: the imitation term's
+  size_t weighed_ = 0;        // group
+  float* outputs_ = nullptr;  // of begin_outputs
+  Job term_;                  // behind the rows: the imitation term's
   BatchSums sums_;
   Surrogate measured_;
 

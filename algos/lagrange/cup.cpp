@@ -92,20 +92,7 @@ Job Cup::begin_second() {
     projection_.weight[i] = static_cast<float>(factor * lagrange_.weight(i));
   for (size_t j = 0; !resolved().state_std() && j < resolved().action_dim(); ++j)
     half_std_[j] = nets().log_std()[j] + resolved().log_share;
-  sweep_ = Sweep(whole_batch());
-  return Job::of<&Cup::advance_half>(this);
-}
-
-bool Cup::advance_half(bool) {
-  const auto width = static_cast<size_t>(resolved().actor.out);
-  workers().cut(sweep_, resolved().chunk_rows);
-  workers().each(sweep_, [&](const Workspace& w, const Chunk& chunk) {
-    gather_obs(rollout(), chunk.order, 1, chunk.rows, w.obs);
-    nets().forward_actor(w.obs, rollout().clouds(chunk.order), chunk.rows, w.actor, w.out);
-    for (size_t i = 0; i < static_cast<size_t>(chunk.rows); ++i)
-      std::copy_n(w.out + i * width, width, half_ + static_cast<size_t>(chunk.order[i]) * width);
-  });
-  return sweep_.over();
+  return learner().begin_outputs(whole_batch(), half_);
 }
 
 void Cup::visit_state(StateIo& io) {

@@ -51,12 +51,9 @@ class Cup final : public Ppo {
   void visit_state(StateIo& io) override;
 
  private:
-  bool advance_half(bool whole);
-
   Lagrange lagrange_;
   ProjectionLoss projection_;
   ProjectionOptions options_{};
-  Sweep sweep_;
   float* half_ = nullptr;      // [samples][outputs of the actor]
   float* half_std_ = nullptr;  // [action_dim] log deviation of the innovation; none with std_mode=state
   bool projects_ = false;

@@ -1,6 +1,7 @@
 // Agents that remember: what acts is what is learned from, in every state of worlds; nothing leaks over an end.
 #include <cmath>
 
+#include "algos/first_order/ppo.hpp"
 #include "algos/first_order/ratio_loss.hpp"
 #include "algos/rollout/sequences.hpp"
 #include "heap_count.hpp"
@@ -460,4 +461,54 @@ TEST(Memory, WarmStartsNeedTheSameMemory) {
       if (&from == &to) b->update_policy(*p);
       Policy::destroy(p);
     }
+}
+
+namespace {
+
+// What the actor gives for every row of a horizon, behind the passes; with a rate of 0 it is what acted.
+class Outputs final : public Ppo {
+ public:
+  explicit Outputs(ResolvedAgentConfig&& resolved) : Ppo(std::move(resolved)) {}
+  float gap() const {  // from the means that acted; -1: of no row
+    const Batch& listed = whole_batch();
+    const size_t dim = resolved().action_dim();
+    float most = -1;
+    for (int32_t i = 0; i < listed.rows; ++i) {
+      const auto at = static_cast<size_t>(listed.order[i]);
+      for (size_t j = 0; j < dim; ++j)
+        most = std::max(most, std::abs(all_[at * width() + j] - rollout().mean[at * dim + j]));
+    }
+    return most;
+  }
+
+ protected:
+  int32_t second_passes() const override { return 1; }
+  Job begin_second() override {
+    all_.assign(static_cast<size_t>(resolved().samples) * width(), 0);
+    return learner().begin_outputs(whole_batch(), all_.data());
+  }
+
+ private:
+  size_t width() const {
+    return static_cast<size_t>(resolved().actor.out);
+  }  // deviations too, with std_mode=state
+  std::vector<float> all_;
+};
+
+}  // namespace
+
+// The policy that CUP projects towards is that of an actor that remembers, too.
+TEST(Memory, OutputsOfTheListedRowsAreThoseThatActed) {
+  for (const Kind& kind : kKinds) {
+    SCOPED_TRACE(kind.name);
+    AgentSetup s = setup_of(kind, "ppo");
+    s.with("learning_rate", "0");
+    const AgentConfig& config = s.ready();
+    Outputs agent(resolve_config(config));
+    agent.open(config);
+    NoiseWorld world(s.config);
+    world.epoch(agent);
+    EXPECT_GE(agent.gap(), 0);
+    EXPECT_LE(agent.gap(), 1e-5f);
+  }
 }
