@@ -32,10 +32,12 @@ SequenceSpace carve_sequences(Arena& arena, const ResolvedAgentConfig& resolved)
 }
 
 // How many of the next rows of a list of `left` ones, at most `limit`, make a chunk of whole sequences, or of a part
-// of one that is too long.
-int32_t whole_sequences(const Batch& batch, const int32_t* order, int32_t left, int32_t limit, int32_t most) {
+// of one that is too long; every stride-th entry is a row.
+int32_t whole_sequences(const Batch& batch, const int32_t* order, int32_t stride, int32_t left, int32_t limit,
+                        int32_t most) {
   const auto sequence = [&](int32_t i) {
-    return order[i] / batch.envs / batch.path * batch.envs + order[i] % batch.envs;
+    const int32_t row = order[i * stride];
+    return row / batch.envs / batch.path * batch.envs + row % batch.envs;
   };
   int32_t boundary = 0, count = 1;
   for (int32_t i = 1; i < left; ++i) {
@@ -131,7 +133,7 @@ void BatchWorkers::cut(Sweep& s, int32_t chunk_rows) {
     const int32_t* first = s.batch.order + segment.first + s.done * s.stride;
     int32_t here = std::min(chunk_rows, rows - s.done);
     if (s.batch.path && here > 0)
-      here = whole_sequences(s.batch, first, rows - s.done, here, most_sequences_);
+      here = whole_sequences(s.batch, first, s.stride, rows - s.done, here, most_sequences_);
     const bool ends = s.done + here == rows;
     workspaces_[s.chunks].chunk = {s.block, first, here, s.done == 0, ends};
     s.done = ends ? 0 : s.done + here;

@@ -97,7 +97,8 @@ ActorScratch carve_actor_scratch(Arena& arena, const ResolvedAgentConfig& resolv
   static_cast<MlpScratch&>(s) = carve_mlp_scratch(arena, resolved.actor, rows);
   if (!resolved.actor_columns.empty() || resolved.sees())
     s.picked = arena.make<float>(n * static_cast<size_t>(resolved.actor.in));
-  if (resolved.gru.units) s.memory = carve_recurrent_scratch(arena, {resolved.actor, resolved.gru}, rows);
+  if (resolved.gru.units)
+    s.memory = carve_recurrent_scratch(arena, {resolved.actor, resolved.gru}, rows, resolved.trusts());
   if (!resolved.sees()) return s;
   const auto features = static_cast<size_t>(resolved.eyes.features());
   s.eyes = carve_pointnet_scratch(arena, resolved.eyes);

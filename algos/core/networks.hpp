@@ -128,6 +128,11 @@ struct Networks {
     recurrent_backward(actor(), net(kActor), seen(kActor, x, scratch), m.steps, m.rows, m.clear, scratch,
                        scratch.memory, dy, grad + net_offset(kActor));
   }
+  void tangent_memory(const float* direction, const float* x, const MemorySteps& m,
+                      const ActorScratch& scratch, float* dy) const {
+    recurrent_tangent(actor(), net(kActor), direction, seen(kActor, x, scratch), m.steps, m.rows, m.clear,
+                      scratch, scratch.memory, dy);
+  }
   void backward_actor(const float* x, const PointRows& clouds, int32_t rows, const ActorScratch& scratch,
                       const float* dy, float* grad) const;
   void tangent_actor(const float* direction, const float* x, const PointRows& clouds, int32_t rows,

@@ -265,12 +265,6 @@ void resolve_memory(ResolvedAgentConfig& resolved) {
   if (resolved.sees())
     fail(Code::kUnsupported, "%s: it cannot be combined with option encoder yet",
          resolved.gru.units ? "memory" : "history");
-  if (resolved.gru.units && resolved.options.knows("trust_kl"))
-    fail(Code::kUnsupported,
-         "memory: %s has no Fisher products through a memory yet; take an algorithm of the first order, such "
-         "as "
-         "ppo_lag, or option history",
-         resolved.row->info.name);
 }
 
 void resolve_networks(ResolvedAgentConfig& resolved) {

@@ -61,6 +61,8 @@ struct ResolvedAgentConfig {
     return groups.empty() ? RecurrentShape{actor, gru}.num_params()
                           : group_params(groups.data(), num_groups());
   }
+  // It learns in a trust region, by Fisher products.
+  bool trusts() const { return options.knows("trust_kl"); }
   bool sees() const { return eyes.points > 0; }
   // The actor's network gives log deviations behind its means.
   bool state_std() const { return actor.out != config.action_dim; }

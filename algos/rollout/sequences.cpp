@@ -7,20 +7,22 @@
 
 namespace rdm {
 
-MemorySteps gather_sequences(const Rollout& r, const int32_t* order, int32_t n, Workspace& workspace) {
+MemorySteps gather_sequences(const Rollout& r, const int32_t* order, int32_t n, Workspace& workspace,
+                             int32_t stride) {
   SequenceSpace& s = workspace.sequences;
+  const auto listed = [&](int32_t i) { return order[i * stride]; };
   const auto number = [&](int32_t row) { return row / r.num_envs / r.path * r.num_envs + row % r.num_envs; };
   s.count = s.steps = 0;
   for (int32_t i = 0; i < n; ++i) {
-    const int32_t t = order[i] / r.num_envs, env = order[i] % r.num_envs;
-    const bool next = i == 0 || number(order[i]) != number(order[i - 1]);
+    const int32_t t = listed(i) / r.num_envs, env = listed(i) % r.num_envs;
+    const bool next = i == 0 || number(listed(i)) != number(listed(i - 1));
     if (next) s.env[s.count] = env, s.begin[s.count++] = t / r.path * r.path;
     const int32_t q = s.count - 1;
     s.last[q] = t;
     s.place[i] = q;  // its step is known, the number of sequences is not yet
     s.steps = std::max(s.steps, t - s.begin[q] + 1);
   }
-  for (int32_t i = 0; i < n; ++i) s.place[i] += (order[i] / r.num_envs - s.begin[s.place[i]]) * s.count;
+  for (int32_t i = 0; i < n; ++i) s.place[i] += (listed(i) / r.num_envs - s.begin[s.place[i]]) * s.count;
   const auto units = static_cast<size_t>(r.units), dim = r.obs_dim, count = static_cast<size_t>(s.count);
   for (size_t q = 0; q < count; ++q) {
     const size_t path = static_cast<size_t>(s.begin[q] / r.path);

@@ -12,8 +12,10 @@
 
 namespace rdm {
 
-// The sequences of n listed rows, in the workspace: their observations in obs [steps][count][seen_dim].
-MemorySteps gather_sequences(const Rollout& r, const int32_t* order, int32_t n, Workspace& workspace);
+// The sequences of n listed rows, every stride-th of the list, in the workspace: their observations in obs
+// [steps][count][seen_dim].
+MemorySteps gather_sequences(const Rollout& r, const int32_t* order, int32_t n, Workspace& workspace,
+                             int32_t stride = 1);
 // What the actor gave for the listed rows, from all steps' outputs to out [n][width]; and back, zeros elsewhere.
 void take_outputs(const SequenceSpace& s, int32_t n, size_t width, float* out);
 void give_gradients(const SequenceSpace& s, int32_t n, size_t width, const float* dout);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "algos/rollout/sequences.hpp"
 #include "base/elementary.hpp"
 
 namespace rdm {
@@ -94,12 +95,28 @@ void Fisher::multiply_chunk(Workspace& workspace, const Chunk& chunk) {
   float* grad = BatchWorkers::gradient_of(workspace, out_);
   const int32_t n = chunk.rows;
   if (n == 0) return std::fill(grad + skip, grad + size, 0.0f);
+  if (nets_->gru.units) return multiply_sequences(workspace, chunk, grad);
   const PointRows seen = clouds(chunk.order);
   gather_obs(*rollout_, chunk.order, stride(), n, workspace.obs);
   nets_->forward_actor(workspace.obs, seen, n, workspace.actor, workspace.out);
   nets_->tangent_actor(v_ + skip, workspace.obs, seen, n, workspace.actor, workspace.dout);
   weigh(workspace.out, n, workspace.dout);
   nets_->backward_actor(workspace.obs, seen, n, workspace.actor, workspace.dout, grad);
+}
+
+// The same through the sequences of the chunk, from the states before them, which are constants.
+void Fisher::multiply_sequences(Workspace& workspace, const Chunk& chunk, float* grad) const {
+  const int32_t n = chunk.rows;
+  const auto width = static_cast<size_t>(nets_->shape[Networks::kActor].out);
+  const SequenceSpace& s = workspace.sequences;
+  const MemorySteps memory = gather_sequences(*rollout_, chunk.order, n, workspace, stride());
+  nets_->forward_memory(workspace.obs, memory, workspace.actor, s.out);
+  take_outputs(s, n, width, workspace.out);
+  nets_->tangent_memory(v_ + nets_->std_size, workspace.obs, memory, workspace.actor, s.out);
+  take_outputs(s, n, width, workspace.dout);
+  weigh(workspace.out, n, workspace.dout);
+  give_gradients(s, n, width, workspace.dout);
+  nets_->backward_memory(workspace.obs, memory, workspace.actor, s.dout, grad);
 }
 
 void Fisher::end_product() {

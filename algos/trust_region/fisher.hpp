@@ -8,6 +8,9 @@
 //   std_mode=state   J' diag(1 / s^2, 2) J / N; J is 0 where a deviation is at a bound
 // and F v is one pass forward with tangents (J v), a scaling of the outputs, and one pass back (J').
 //
+// With a GRU the outputs are those of sequences, and both passes go through their decisions, from the states before
+// them, which are constants, as in the gradient (rollout/sequences.hpp).
+//
 // Departures: damping I is added, as all do; the sum is over every fisher_stride-th row (1; 4 in the defaults
 // of throws, for speed); kl_mean_over_dims divides KL and F by the number of actions, as the peers' code
 // does, where the paper sums.
@@ -49,6 +52,7 @@ class Fisher {
   bool advance_rows(bool whole);
   bool advance_product(bool whole);
   void multiply_chunk(Workspace& workspace, const Chunk& chunk);
+  void multiply_sequences(Workspace& workspace, const Chunk& chunk, float* grad) const;
   void end_product();
   PointRows clouds(const int32_t* rows) const;
   // Tangents of the outputs of n rows into what is propagated back.

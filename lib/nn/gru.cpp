@@ -57,13 +57,15 @@ size_t backward_pack_floats(int32_t in, int32_t out) {
 
 }  // namespace
 
-GruScratch carve_gru_scratch(Arena& arena, const GruShape& shape, int32_t rows) {
+GruScratch carve_gru_scratch(Arena& arena, const GruShape& shape, int32_t rows, bool tangents) {
   GruScratch s;
   const size_t n = sz(rows), units = sz(shape.units);
   s.gates = arena.make<float>(n * 3 * units);
   s.state_part = arena.make<float>(n * 3 * units);
   s.before = arena.make<float>(n * units);
   s.carry = arena.make<float>(n * units);
+  for (float** moved : {&s.gates_moved, &s.state_moved})
+    if (tangents) *moved = arena.make<float>(n * 3 * units);
   s.pack_input = arena.make<float>(backward_pack_floats(shape.in, 3 * shape.units));
   s.pack_state = arena.make<float>(backward_pack_floats(shape.units, 3 * shape.units));
   return s;
@@ -122,6 +124,38 @@ void gru_backward(const GruShape& shape, const float* params, const float* x, in
   if (dx) kernel.gemm(input_gradient(scratch.gates, all, gates, params, shape.in, dx, scratch.pack_input));
 }
 
+void gru_tangent(const GruShape& shape, const float* params, const float* direction, const float* x,
+                 const float* dx, int32_t steps, int32_t rows, const uint8_t* clear,
+                 const GruScratch& scratch, float* dh) {
+  const Kernels& kernel = kernels();
+  const int32_t gates = 3 * shape.units, all = steps * rows;
+  const size_t units = sz(shape.units), block = sz(rows) * units;
+  // C = x D^T + dbias + dx W^T, D and dbias of the direction
+  const auto moved = [&](const float* in, const float* din, int32_t n, int32_t width, size_t weights,
+                         size_t bias, float* out, float* packed) {
+    GemmArgs g = layer_product(in, n, width, direction + weights, din ? nullptr : direction + bias, gates,
+                               out, packed);
+    kernel.gemm(g);
+    if (!din) return;
+    g = layer_product(din, n, width, params + weights, direction + bias, gates, out, packed);
+    g.add = true;
+    kernel.gemm(g);
+  };
+  moved(x, dx, all, shape.in, 0, shape.input_bias_offset(), scratch.gates_moved, scratch.pack_input);
+  for (int32_t s = 0; s < steps; ++s) {
+    const size_t at = sz(s) * block;
+    float* const dbefore = scratch.carry;
+    if (s > 0) std::copy_n(dh + at - block, block, dbefore);
+    for (size_t r = 0; s > 0 && clear && r < sz(rows); ++r)
+      if (clear[sz(s) * sz(rows) + r]) std::fill_n(dbefore + r * units, units, 0.0f);
+    if (s == 0) std::fill_n(dbefore, block, 0.0f);
+    moved(scratch.before + at, s > 0 ? dbefore : nullptr, rows, shape.units, shape.state_offset(),
+          shape.state_bias_offset(), scratch.state_moved, scratch.pack_state);
+    kernel.gru_tangents(scratch.state_part + 3 * at, scratch.before + at, scratch.gates + 3 * at, rows,
+                        shape.units, scratch.gates_moved + 3 * at, scratch.state_moved, dbefore, dh + at);
+  }
+}
+
 void gru_init(const GruShape& shape, Stream& stream, float* params) {
   const double bound = 1 / std::sqrt(static_cast<double>(shape.units));
   for (size_t i = 0; i < shape.num_params(); ++i)
@@ -132,10 +166,11 @@ RecurrentShape with_gru(const MlpShape& mlp, int32_t units) {
   return {mlp, {units ? mlp.layer_in(mlp.num_hidden) : 0, units}};
 }
 
-RecurrentScratch carve_recurrent_scratch(Arena& arena, const RecurrentShape& shape, int32_t rows) {
+RecurrentScratch carve_recurrent_scratch(Arena& arena, const RecurrentShape& shape, int32_t rows,
+                                         bool tangents) {
   RecurrentScratch s;
   const size_t n = sz(rows) * sz(shape.gru.units);
-  s.gru = carve_gru_scratch(arena, shape.gru, rows);
+  s.gru = carve_gru_scratch(arena, shape.gru, rows, tangents);
   s.h = arena.make<float>(n);
   s.dh = arena.make<float>(n);
   s.pack_head = arena.make<float>(backward_pack_floats(shape.gru.units, shape.mlp.out));
@@ -189,6 +224,24 @@ void recurrent_backward(const RecurrentShape& shape, const float* params, const 
   gru_backward(shape.gru, params + shape.gru_offset(), hidden ? layers.activation[hidden - 1] : x, steps,
                rows, clear, scratch.gru, scratch.dh, grad + shape.gru_offset(), dx);
   mlp_backward_hidden(shape.mlp, params, x, all, layers, dx, grad);
+}
+
+void recurrent_tangent(const RecurrentShape& shape, const float* params, const float* direction,
+                       const float* x, int32_t steps, int32_t rows, const uint8_t* clear,
+                       const MlpScratch& layers, const RecurrentScratch& scratch, float* dy) {
+  const int32_t hidden = shape.mlp.num_hidden, all = steps * rows;
+  mlp_tangent(shape.mlp, params, direction, x, all, layers, nullptr);
+  gru_tangent(shape.gru, params + shape.gru_offset(), direction + shape.gru_offset(),
+              hidden ? layers.activation[hidden - 1] : x, hidden ? layers.delta[(hidden - 1) & 1] : nullptr,
+              steps, rows, clear, scratch.gru, scratch.dh);
+  const MlpShape head = shape.head();
+  const float *weights = params + shape.head_offset(), *to = direction + shape.head_offset();
+  GemmArgs g = layer_product(scratch.h, all, head.in, to, nullptr, head.out, dy, scratch.pack_head);
+  kernels().gemm(g);
+  g = layer_product(scratch.dh, all, head.in, weights, to + head.bias_offset(0), head.out, dy,
+                    scratch.pack_head);
+  g.add = true;
+  kernels().gemm(g);
 }
 
 void recurrent_init(const RecurrentShape& shape, Stream& stream, float last_layer_scale, float* params) {

@@ -37,10 +37,12 @@ struct GruShape {
 struct GruScratch {
   float *gates = nullptr, *state_part = nullptr;  // [][3 units] r, z, n; what the state gives
   float* before = nullptr;                        // [][units] the state before each step
-  float* carry = nullptr;                         // [rows][units] of the backward pass
+  float* carry = nullptr;                         // [rows][units] of the backward pass, or of a tangent
+  float *gates_moved = nullptr,
+        *state_moved = nullptr;  // as the two above, of a tangent; null: there are none
   float *pack_input = nullptr, *pack_state = nullptr;
 };
-GruScratch carve_gru_scratch(Arena& arena, const GruShape& shape, int32_t rows);
+GruScratch carve_gru_scratch(Arena& arena, const GruShape& shape, int32_t rows, bool tangents = false);
 
 // h [steps][rows][units] of x [steps][rows][in], from h0 [rows][units]; clear [steps][rows] or null. h may be h0
 // where there is one step.
@@ -50,6 +52,11 @@ void gru_forward(const GruShape& shape, const float* params, const float* x, int
 // dh [steps][rows][units] = d(loss)/dh, of the last forward pass, which it spoils. h0 is a constant.
 void gru_backward(const GruShape& shape, const float* params, const float* x, int32_t steps, int32_t rows,
                   const uint8_t* clear, const GruScratch& scratch, const float* dh, float* grad, float* dx);
+// dh [steps][rows][units] along a direction of the parameters and dx [steps][rows][in] of the inputs (null: they do
+// not move), of the last forward pass, which it leaves as it is. h0 is a constant. Scratch with tangents.
+void gru_tangent(const GruShape& shape, const float* params, const float* direction, const float* x,
+                 const float* dx, int32_t steps, int32_t rows, const uint8_t* clear,
+                 const GruScratch& scratch, float* dh);
 // Weights and biases ~ U(-1/sqrt(units), 1/sqrt(units)).
 void gru_init(const GruShape& shape, Stream& stream, float* params);
 
@@ -75,7 +82,8 @@ struct RecurrentScratch {
   float *h = nullptr, *dh = nullptr;  // [][units]
   float* pack_head = nullptr;
 };
-RecurrentScratch carve_recurrent_scratch(Arena& arena, const RecurrentShape& shape, int32_t rows);
+RecurrentScratch carve_recurrent_scratch(Arena& arena, const RecurrentShape& shape, int32_t rows,
+                                         bool tangents = false);
 // Enough for one forward step at a time.
 RecurrentScratch cut_recurrent_scratch(ScratchCutter& cutter, const RecurrentShape& shape, int32_t rows);
 
@@ -87,6 +95,11 @@ void recurrent_forward(const RecurrentShape& shape, const float* params, const f
 void recurrent_backward(const RecurrentShape& shape, const float* params, const float* x, int32_t steps,
                         int32_t rows, const uint8_t* clear, const MlpScratch& layers,
                         const RecurrentScratch& scratch, const float* dy, float* grad);
+// dy [steps][rows][out] along a direction of the parameters, of the last forward pass over the same x, which it leaves
+// as it is.
+void recurrent_tangent(const RecurrentShape& shape, const float* params, const float* direction,
+                       const float* x, int32_t steps, int32_t rows, const uint8_t* clear,
+                       const MlpScratch& layers, const RecurrentScratch& scratch, float* dy);
 void recurrent_init(const RecurrentShape& shape, Stream& stream, float last_layer_scale, float* params);
 
 // As mlp_bound: states are within +-1.

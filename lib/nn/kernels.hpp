@@ -95,6 +95,11 @@ struct Kernels {
   // past the products to the state before. gates and state_part become d(loss) by what input and state give.
   void (*gru_slopes)(const float* before, const float* dh, int32_t rows, int32_t n, float* gates,
                      float* state_part, float* carry);
+  // Its derivative along a direction, after gru_gates: of what input and state give, dgates and dstate_part, and of
+  // the state before, dbefore; to dh, which may be dbefore.
+  void (*gru_tangents)(const float* state_part, const float* before, const float* gates, int32_t rows,
+                       int32_t n, const float* dgates, const float* dstate_part, const float* dbefore,
+                       float* dh);
   // Elementwise, y may be x: for tests of their accuracy.
   void (*map_tanh)(const float* x, size_t n, float* y);
   void (*map_elu)(const float* x, size_t n, float* y);

@@ -120,6 +120,23 @@ void gru_slopes(const float* before, const float* dh, int32_t rows, int32_t n, f
     });
 }
 
+void gru_tangents(const float* state_part, const float* before, const float* gates, int32_t rows, int32_t n,
+                  const float* dgates, const float* dstate_part, const float* dbefore, float* dh) {
+  const V one = all(1.0f);
+  for (int32_t row = 0; row < rows; ++row, state_part += 3 * n, before += n, gates += 3 * n, dgates += 3 * n,
+               dstate_part += 3 * n, dbefore += n, dh += n)
+    by_lanes(n, [&](size_t j, int32_t count) {
+      const size_t jz = j + at(n), jn = jz + at(n);
+      const V r = get(gates + j, count), z = get(gates + jz, count), c = get(gates + jn, count);
+      const V dr = r * (one - r) * (get(dgates + j, count) + get(dstate_part + j, count));
+      const V dz = z * (one - z) * (get(dgates + jz, count) + get(dstate_part + jz, count));
+      const V dc = fma(-c, c, one) * (get(dgates + jn, count) +
+                                      fma(dr, get(state_part + jn, count), r * get(dstate_part + jn, count)));
+      const V stays = fma(z, get(dbefore + j, count), (one - z) * dc);
+      put(dh + j, fma(dz, get(before + j, count) - c, stays), count);
+    });
+}
+
 // Of a build that acts and does not learn, what only learners call is left out.
 #ifndef RDM_LEARNS
 #define RDM_LEARNS 1
@@ -131,7 +148,8 @@ void gru_slopes(const float* before, const float* dh, int32_t rows, int32_t n, f
         RDM_TO_LEARN(column_moments), normalize, add_noise, RDM_TO_LEARN(log_prob),               \
         RDM_TO_LEARN(log_prob_grad), RDM_TO_LEARN(kl), max_rows, activate, RDM_TO_LEARN(slope),   \
         RDM_TO_LEARN(spread_slots), RDM_TO_LEARN(dot_slots), gru_gates, RDM_TO_LEARN(gru_slopes), \
-        RDM_TO_LEARN(map<tanh_of>), RDM_TO_LEARN(map<elu_of>), RDM_TO_LEARN(map<exp_of>)          \
+        RDM_TO_LEARN(gru_tangents), RDM_TO_LEARN(map<tanh_of>), RDM_TO_LEARN(map<elu_of>),        \
+        RDM_TO_LEARN(map<exp_of>)                                                                 \
   }
 
 }  // namespace

@@ -18,7 +18,7 @@ struct Owned {
   Owned(const RecurrentShape& shape, int32_t rows) {
     const auto make = [&](Arena& a) {
       layers = carve_mlp_scratch(a, shape.mlp, rows);
-      scratch = carve_recurrent_scratch(a, shape, rows);
+      scratch = carve_recurrent_scratch(a, shape, rows, true);
     };
     Arena measure;
     make(measure);
@@ -164,6 +164,37 @@ TEST(Gru, GradientsAreThoseOfDifferencesInDouble) {
         const double want = (above - below) / (2 * kStep);
         ASSERT_NEAR(static_cast<double>(grad[i]), want, 2e-5 * (1 + std::abs(want))) << i;
       }
+    }
+  });
+}
+
+// The derivative of all outputs along a direction is their difference in double, and the passes before and behind it
+// are as without it.
+TEST(Gru, TangentsAreDifferencesInDouble) {
+  for_each_isa([](const char* isa) {
+    SCOPED_TRACE(isa);
+    for (const Case& c : cases()) {
+      Owned own(c.shape, c.steps * c.rows);
+      const std::vector<float> y = forward(c, own), v = random_floats(c.params.size(), 9, 0.3f);
+      std::vector<float> dy(y.size());
+      recurrent_tangent(c.shape, c.params.data(), v.data(), c.x.data(), c.steps, c.rows, c.clear.data(),
+                        own.layers, own.scratch, dy.data());
+      std::vector<double> above(c.params.begin(), c.params.end()), below = above;
+      constexpr double kStep = 1e-5;
+      for (size_t i = 0; i < v.size(); ++i) {
+        above[i] += kStep * static_cast<double>(v[i]);
+        below[i] -= kStep * static_cast<double>(v[i]);
+      }
+      above = in_double(c, above), below = in_double(c, below);
+      for (size_t i = 0; i < y.size(); ++i) {
+        const double want = (above[i] - below[i]) / (2 * kStep);
+        ASSERT_NEAR(static_cast<double>(dy[i]), want, 2e-5 * (1 + std::abs(want))) << i;
+      }
+      const std::vector<float> weight = loss_weights(c);
+      std::vector<float> behind(c.params.size());
+      recurrent_backward(c.shape, c.params.data(), c.x.data(), c.steps, c.rows, c.clear.data(), own.layers,
+                         own.scratch, weight.data(), behind.data());
+      EXPECT_EQ(behind, gradient(c, own));
     }
   });
 }
