@@ -132,6 +132,11 @@ function(rdm_layer name folder)
     list(TRANSFORM RDM_ALONE PREPEND ${PROJECT_SOURCE_DIR}/capi/ OUTPUT_VARIABLE alone)
     set_source_files_properties(${alone} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   endif()
+  # The loops that a step and an update live in are in the other layers. These are read in, set up and told about, where
+  # -O3 gives bytes and no speed.
+  if(name MATCHES "^(record|objects|robot|tasks|algos|capi)$")
+    target_compile_options(rdm_${name} PRIVATE $<$<CONFIG:Release>:-O2>)
+  endif()
   if(name MATCHES "^(tasks|algos|capi)$")
     target_include_directories(rdm_${name} PRIVATE ${PROJECT_SOURCE_DIR})
   endif()
