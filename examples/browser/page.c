@@ -4,6 +4,7 @@
 #define RDM_EXPERIMENTAL
 #include <emscripten.h>
 #include <math.h>
+#include <redman/memory.h>
 #include <redman/redman.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -102,10 +103,19 @@ static rdm_policy_info policy_info;
 static void* scratch;
 static size_t scratch_size;
 static float *poses, *held;
+static float* memory; /* of the policy, of the episode that runs */
 static rdm_pose* placed;
 static double numbers[6 + 3 * RDM_MAX_COSTS];
 static float touches[kContacts * kContactNumbers];
 static int decision_age;
+
+static void begin_episode(void) {
+  decision_age = 0;
+  if (policy) memset(memory, 0, (size_t)policy_info.state_dim * sizeof(float));
+}
+static rdm_result act(void) {
+  return rdm_policy_act_state(policy, rows.obs, memory, 1, NULL, held, scratch, scratch_size);
+}
 
 static rdm_pool* make_pool(const char* task, int worlds, double seed, const char* settings) {
   rdm_pool_config config;
@@ -136,14 +146,14 @@ EXPORT int page_open(const char* task, double seed, const char* settings) {
   poses = calloc((size_t)spec.num_shapes * 7 + 1, sizeof *poses);
   placed = calloc((size_t)spec.num_shapes + 1, sizeof *placed);
   held = calloc((size_t)spec.action_dim, sizeof *held);
-  decision_age = 0;
+  begin_episode();
   return poses && placed && held ? 0 : -1;
 }
 
 /* The episode that this seed begins. */
 EXPORT int page_reset(double seed) {
   const uint64_t s = (uint64_t)seed;
-  decision_age = 0;
+  begin_episode();
   return rdm_pool_reset(pool, &s, NULL) ? -1 : 0;
 }
 
@@ -211,9 +221,12 @@ EXPORT int page_policy(const void* bytes, int size) {
   rdm_policy_get_info(policy, &policy_info);
   scratch_size = rdm_policy_scratch(policy, 1);
   free(scratch);
+  free(memory);
   scratch = malloc(scratch_size);
-  decision_age = 0;
-  return scratch ? 0 : -1;
+  memory = malloc(((size_t)policy_info.state_dim + 1) * sizeof(float));
+  if (!scratch || !memory) return -1;
+  begin_episode();
+  return 0;
 }
 
 /* One control step; the actor is one of `enum actor`, `given` [actions] what kGiven does. Afterwards
@@ -225,7 +238,7 @@ EXPORT int page_step(int actor, const float* given) {
   if (actor == kPolicy) {
     const int repeat = policy_info.action_repeat > 1 ? policy_info.action_repeat : 1;
     if (decision_age++ % repeat == 0) {
-      if (rdm_policy_act(policy, rows.obs, 1, NULL, held, scratch, scratch_size)) return -1;
+      if (act()) return -1;
     }
     memcpy(rows.action, held, bytes);
   } else if (actor == kGiven) {
@@ -242,7 +255,7 @@ EXPORT int page_step(int actor, const float* given) {
     numbers[6 + spec.cost_dim + k] = rows.episode_cost[k];
     numbers[6 + 2 * spec.cost_dim + k] = rows.cost_raw[k];
   }
-  if (rows.terminated[0] || rows.truncated[0]) decision_age = 0;
+  if (rows.terminated[0] || rows.truncated[0]) begin_episode();
   return 0;
 }
 EXPORT const double* page_numbers(void) {
@@ -388,6 +401,6 @@ EXPORT int page_steps(int steps) {
 }
 EXPORT int page_acts(int acts) {
   for (int i = 0; i < acts; ++i)
-    if (rdm_policy_act(policy, rows.obs, 1, NULL, held, scratch, scratch_size)) return -1;
+    if (act()) return -1;
   return 0;
 }

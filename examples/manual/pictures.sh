@@ -42,6 +42,7 @@ bandit front 4 180x135 0 1
 two_state front 4 180x135 0 4
 lqr_line front 4 180x135 0 6
 matrix_game front 4 180x135 0 4
+recall front 4 180x135 0 20
 ball_run front 4 180x135 0 240
 ball_circle front 4 180x135 0 240
 car_run front 4 180x135 0 480

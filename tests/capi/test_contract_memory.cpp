@@ -7,6 +7,7 @@
 #include "contract.hpp"
 #include "heap_count.hpp"
 #include "policies.hpp"
+#include "shields.hpp"
 
 namespace {
 
@@ -163,6 +164,96 @@ TEST(ContractMemory, RefusalsNameTheCall) {
   EXPECT_EQ(plain.info.state_dim, 0);
   EXPECT_EQ(plain.act(obs.data(), nullptr, 4, action.data()), RDM_OK) << rdm_last_error();
   EXPECT_EQ(rdm_agent_forget(plain.agent, RDM_ACT_MEAN, nullptr), RDM_OK);
+}
+
+// Calls that would act without the state, or learn from rows alone, say no and name what is the matter; what does not
+// ask for it works.
+TEST(ContractMemory, WhatCannotKeepItSaysNo) {
+  for (const char* kind : {"memory=gru:6\nhidden=8\nhorizon=20", "history=4\nhidden=8\nhorizon=20"}) {
+    SCOPED_TRACE(kind);
+    rdm_pool_config pc = pool_config(4);
+    pc.task = "recall";
+    const Pool pool(make_pool(pc));
+    ASSERT_EQ(rdm_pool_reset(pool.get(), nullptr, nullptr), RDM_OK);
+    rdm_agent_config ac;
+    ASSERT_EQ(rdm_agent_config_init(&ac, sizeof ac), RDM_OK);
+    ASSERT_EQ(rdm_agent_config_for_pool(&ac, pool.get()), RDM_OK);
+    ac.algo = "ppo";
+    ac.settings = kind;
+    const Agent agent(make_agent(ac));
+    auto epoch = RDM_INIT(rdm_epoch);
+    ASSERT_EQ(rdm_agent_rollout(agent.get(), pool.get(), &epoch), RDM_OK) << rdm_agent_error(agent.get());
+    const Policy policy = read_policy(policy_bytes(agent.get()));
+    const auto says = [&](rdm_result got, const char* error, const char* word) {
+      EXPECT_EQ(got, RDM_ERROR_UNSUPPORTED) << word;
+      EXPECT_NE(std::string(error).find("memory"), std::string::npos) << word << ": " << error;
+    };
+    // a shield that falls back on it, and training under a shield
+    const Shield shield = shield_of(shield_config(pool));
+    says(rdm_shield_add_policy(shield.get(), policy.get()), rdm_shield_error(shield.get()), "fallback");
+    says(rdm_agent_set_shield(agent.get(), shield.get()), rdm_agent_error(agent.get()), "set_shield");
+    // one that only judges what is proposed does not ask for it
+    const rdm_buffers b = buffers_of(pool.get());
+    std::vector<float> state(4 * static_cast<size_t>([&] {
+                               auto info = RDM_INIT(rdm_policy_info);
+                               rdm_policy_get_info(policy.get(), &info);
+                               return info.state_dim;
+                             }()));
+    std::vector<unsigned char> scratch(rdm_policy_scratch(policy.get(), 4));
+    ASSERT_EQ(rdm_policy_act_state(policy.get(), b.obs, state.data(), 4, nullptr, b.action, scratch.data(),
+                                   scratch.size()),
+              RDM_OK);
+    EXPECT_EQ(rdm_shield_act(shield.get(), pool.get(), nullptr, b.action, b.action), RDM_OK)
+        << rdm_shield_error(shield.get());
+    // a planner that is proposed its actions
+    rdm_planner_config plan;
+    ASSERT_EQ(rdm_planner_config_init(&plan, sizeof plan), RDM_OK);
+    char error[256] = "";
+    plan.pool = pool.get();
+    plan.policy = policy.get();
+    plan.error = error;
+    plan.error_size = sizeof error;
+    rdm_planner* planner = nullptr;
+    says(rdm_planner_create(&planner, &plan), error, "planner");
+    EXPECT_EQ(planner, nullptr);
+    // cloning and the imitation term
+    rdm_recording_config rc;
+    ASSERT_EQ(rdm_recording_config_init(&rc, sizeof rc), RDM_OK);
+    ASSERT_EQ(rdm_recording_config_for_pool(&rc, pool.get()), RDM_OK);
+    rdm_recording* recording = nullptr;
+    ASSERT_EQ(rdm_recording_create(&recording, &rc), RDM_OK) << rdm_last_error();
+    for (int i = 0; i < 5; ++i) {
+      ASSERT_EQ(rdm_pool_baseline(pool.get(), RDM_BASELINE_RANDOM), RDM_OK);
+      ASSERT_EQ(rdm_recording_begin_step(recording, pool.get(), nullptr, nullptr), RDM_OK);
+      ASSERT_EQ(rdm_pool_step(pool.get()), RDM_OK);
+      ASSERT_EQ(rdm_recording_end_step(recording, pool.get(), nullptr), RDM_OK);
+    }
+    says(rdm_agent_clone(agent.get(), recording, nullptr, nullptr), rdm_agent_error(agent.get()), "clone");
+    says(rdm_agent_set_recording(agent.get(), recording), rdm_agent_error(agent.get()), "set_recording");
+    rdm_recording_destroy(recording);
+    // one network is no team
+    size_t size = 0;
+    EXPECT_NE(rdm_policy_write_group(policy.get(), 0, nullptr, 0, &size), RDM_OK);
+    // values: critics beside a GRU see rows alone, those of a history do not
+    std::vector<float> value(4);
+    const rdm_result values = rdm_agent_get_values(agent.get(), b.obs, 4, value.data(), nullptr);
+    if (std::strstr(kind, "gru"))
+      EXPECT_EQ(values, RDM_OK) << rdm_agent_error(agent.get());
+    else
+      says(values, rdm_agent_error(agent.get()), "values");
+    // how unusual a row is does not hang on what came before
+    std::vector<float> first(4), again(4);
+    const auto novelty = [&](std::vector<float>& out) {
+      return rdm_policy_novelty(policy.get(), b.obs, 4, out.data());
+    };
+    if (novelty(first) == RDM_OK) {
+      ASSERT_EQ(rdm_policy_act_state(policy.get(), b.obs, state.data(), 4, nullptr, b.action, scratch.data(),
+                                     scratch.size()),
+                RDM_OK);
+      EXPECT_EQ(novelty(again), RDM_OK);
+      EXPECT_EQ(first, again);
+    }
+  }
 }
 
 }  // namespace
