@@ -162,6 +162,29 @@ class AsTheTool(Folders):
         told("train", "--resume", a, "--steps", 20000)
         self.assertEqual(rows(a), rows(b))
 
+    @NEEDS_TOOL
+    def test_teachers_that_act_are_the_commands(self):
+        small = {**SMALL, "steps": 4000, "options": {"horizon": 20, "imitation": 0.5, "action_repeat": 5}}
+        words = ("--steps", 4000, *WORDS[2:-2], "--set", "horizon=20", "--set", "imitation=0.5", "--set", "action_repeat=5")
+        teach = {"decisions": 16, "clone_epochs": 2, "start_share": (0.5, 0.1), "noise": 0.02}
+        flags = ("--demo-decisions", 16, "--clone-epochs", 2, "--start-share", "0.5..0.1", "--noise", 0.02)
+        a, b = self.path("a"), self.path("b")
+        redman.train("grasp", **small, from_="demo", teach=teach, out=a)
+        told("train", "--task", "grasp", *words, "--from", "demo", *flags, "--out", b)
+        self.assertEqual(Path(a, "config.json").read_text(), Path(b, "config.json").read_text())
+        self.assertEqual((rows(a), events(a)), (rows(b), events(b)))
+        self.assertEqual(Path(a, "policy.rdm").read_bytes(), Path(b, "policy.rdm").read_bytes())
+
+        folder = self.path("teacher")  # DAgger from a policy of its own, without a run folder
+        redman.train(TASK, **SMALL, out=folder)
+        run = redman.train(TASK, **SMALL, from_=folder, teach={"dagger": 1, "decisions": 16, "clone_epochs": 2})
+        told("train", "--task", TASK, *WORDS, "--from", folder, "--dagger", 1, "--demo-decisions", 16, "--clone-epochs", 2,
+             "--out", self.path("d"))
+        self.assertEqual(bytes(run.policy), Path(self.path("d"), "policy.rdm").read_bytes())
+        self.assertIsNone(run.folder)
+        with self.assertRaisesRegex(redman.Error, "my.demo"):
+            redman.train("grasp", **small, from_="my.demo")
+
     def test_each_continues_what_the_other_began(self):
         whole, ours, theirs, third = (self.path(name) for name in ("whole", "ours", "theirs", "third"))
         redman.train(TASK, **{**SMALL, "steps": 24000}, out=whole)
@@ -279,9 +302,11 @@ class Going(Folders):
         self.assertGreater(run.evaluate(episodes=8).return_mean, 350)  # 415 of the bundled policy, -100 of none
         self.assertGreater(redman.train(TASK, **SMALL, from_=run).evaluate(episodes=8).return_mean, 350)
         recording = redman.Recording(obs_dim=7, action_dim=2, capacity=16)
-        for wrong, words in (({"from_": "demo"}, "redman train --from demo"), ({"from_": "random"}, "nothing to learn"),
-                             ({"teach": {"clone_epochs": 3}}, "from whom"),
-                             ({"from_": trained, "teach": {"dagger": 2}}, "command"),
+        for wrong, words in (({"from_": "random"}, "nothing to learn"), ({"teach": {"clone_epochs": 3}}, "from whom"),
+                             ({"from_": trained, "teach": {"dagger": 2}}, "a word or a path"),
+                             ({"from_": trained, "teach": {"noise": 0.1}}, "of a teacher that acts"),
+                             ({"from_": "demo", "teach": {"beta": 2}}, "not in 0 to 1"),
+                             ({"from_": "demo", "reward": lambda rows: rows.reward}, "does not know reward="),
                              ({"from_": trained, "teach": {"clone_epoch": 2}}, "nearest is clone_epochs"),
                              ({"from_": trained, "teach": {"start_share": 0.5}}, "need a recording"),
                              ({"from_": recording}, "recording"), ({"from_": self.path("no.npz")}, "no such file")):

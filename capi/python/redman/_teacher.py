@@ -1,5 +1,4 @@
-"""What a run learns from before it learns from rewards: a policy or a recording. This is the part of `redman train --from` in
-which no teacher acts."""
+"""What a run learns from before it learns from rewards: a policy or a recording, or a teacher that acts (_taught.py)."""
 from __future__ import annotations
 
 import copy
@@ -29,7 +28,8 @@ _SETTINGS: dict[str, Any] = {
     "decisions": 640, "noise": 0.05, "success_only": False, "clone_epochs": 20, "clone_patience": 0, "clone_rate": 1e-3,
     "validation": 0.1, "pretrain": 0, "pretrain_epochs": 10, "dagger": 0, "beta": 0.5, "start_share": 0.0,
     "start_share_end": 0.0}
-_OF_THE_TOOL = ("decisions", "noise", "pretrain", "pretrain_epochs", "dagger", "beta", "start_share_end")
+_ACTING = ("decisions", "noise", "pretrain", "pretrain_epochs", "dagger", "beta")  # of teachers that act
+_MOST = {"validation": 0.9, "beta": 1.0, "dagger": 1000, "decisions": 1 << 24, "pretrain": 1 << 20}
 
 
 def _is_recording(teacher: Any) -> bool:
@@ -46,25 +46,31 @@ class Teach:
     said: str = ""  # what config.json calls the teacher
     policy: Optional[Policy] = None  # or
     recording: Optional[Recording] = None
+    acts: bool = False  # the command teaches
 
     @classmethod
     def wanted(cls, teacher: Any, settings: Optional[Mapping[str, Any]], task: Optional[str]) -> Optional[Teach]:
         """The teacher that was asked for; None: there is none."""
-        if teacher is None:
-            if settings:
-                raise UsageError("teach: from whom? from_=a policy, a run folder, or a recording (.npz)")
-            return None
         teach = cls(teacher)
         for key, value in (settings or {}).items():
             teach._set(key, value)
+        if teacher is None and not teach.settings["pretrain"]:
+            if settings:
+                raise UsageError("teach: from whom? from_=a policy, a run folder, a recording (.npz), or \"demo\"")
+            return None
         if hasattr(teacher, "policy") and hasattr(teacher, "env_steps"):  # a run
             teach.teacher = teacher.policy
         word = teacher if isinstance(teacher, str) else ""
-        if word == "demo" or str(teacher).endswith(".demo"):
-            raise UnsupportedError(f"from_={word!r}: the command plays the script of a demonstration: redman train --from {word}"
-                                   "; its --save-recording demo.npz writes what from_=\"demo.npz\" takes")
         if word in ("zero", "hold", "random"):
             raise ArgumentError(f"from_={word!r}: there is nothing to learn from this")
+        demo = word == "demo" or str(teacher).endswith(".demo")
+        teach.acts = bool(demo or teach.settings["pretrain"] or teach.settings["dagger"])
+        if teach.acts:
+            teach.said = "" if teacher is None else os.fspath(teacher) if isinstance(teacher, (str, os.PathLike)) else "a policy"
+            return teach
+        odd = [key for key in settings or {} if key in _ACTING]
+        if odd:
+            raise UsageError(f"teach: {odd[0]} is of a teacher that acts: from_=\"demo\", a .demo file, or teach={{\"dagger\": 2}}")
         if _is_recording(teacher):
             teach.recording = teacher if isinstance(teacher, Recording) else Recording.load(teacher)
             teach.said = "a recording" if isinstance(teacher, Recording) else os.fspath(teacher)
@@ -87,11 +93,9 @@ class Teach:
         return {"from": self.said, **self.settings}
 
     def _set(self, key: str, value: Any) -> None:
-        if key in _OF_THE_TOOL:
-            raise UnsupportedError(f"teach: {key} is of teachers that act: the command `redman train --from` has it")
-        if key not in _SETTINGS:
-            raise UsageError(f"teach: no {key}{nearest(key, set(_SETTINGS) - set(_OF_THE_TOOL))}; there are "
-                             f"{', '.join(name for name in _SETTINGS if name not in _OF_THE_TOOL)}")
+        if key not in _SETTINGS or key == "start_share_end":
+            raise UsageError(f"teach: no {key}{nearest(key, set(_SETTINGS) - {'start_share_end'})}; there are "
+                             f"{', '.join(name for name in _SETTINGS if name != 'start_share_end')}")
         if key == "start_share":
             first, last = value if isinstance(value, (tuple, list)) else (value, value)
             if not (0 <= first <= 1 and 0 <= last <= 1):
@@ -100,20 +104,20 @@ class Teach:
         elif isinstance(_SETTINGS[key], bool):
             self.settings[key] = bool(value)
         elif isinstance(_SETTINGS[key], int):
-            self.settings[key] = whole(value, f"teach: {key}", 1 if key == "clone_epochs" else 0, 100_000)
+            least = 1 if key in ("clone_epochs", "decisions") else 0
+            self.settings[key] = whole(value, f"teach: {key}", least, int(_MOST.get(key, 100_000)))
         else:
-            most = 0.9 if key == "validation" else 10.0
+            most = _MOST.get(key, 10.0)
             if not 0 <= float(value) <= most:
                 raise ArgumentError(f"teach: {key}: {value!r} is not in 0 to {most}")
             self.settings[key] = float(value)
 
     @property
     def task(self) -> Optional[str]:
-        """The task of the teacher."""
+        """The task of the teacher; None where the command finds it."""
         if self.policy is not None:
             return self.policy.info.task or None
-        assert self.recording is not None
-        return self.recording.info.task or None
+        return None if self.recording is None else self.recording.info.task or None
 
     def task_options(self, task: str) -> list[tuple[str, Value]]:
         """Options of the task as the teacher had them, which the caller's override."""
@@ -159,9 +163,10 @@ class Teach:
         """Does the same for a run that is resumed, where the run still needs it."""
         if float(agent.options["imitation"]) <= 0 and not self.starts:
             return
-        if not _is_recording(self.teacher):
+        if self.recording is None and not _is_recording(self.teacher):
             raise UnsupportedError(f"resume: it still learns from {self.said!r}, which the command plays: redman train --resume")
-        self.recording = Recording.load(self.teacher)
+        if self.recording is None:
+            self.recording = Recording.load(self.teacher)
         self.apply(agent, pool, seed)
 
     @property

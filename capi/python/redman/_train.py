@@ -1,14 +1,16 @@
 """train: a complete training run, with the run folder of the command-line tool."""
 from __future__ import annotations
 
+import contextlib
 import inspect
 import math
 import os
+import tempfile
 from itertools import product
 from pathlib import Path
 from typing import Any, List, Mapping, Optional, Sequence, Tuple, TypeVar, Union, overload
 
-from . import _discovery
+from . import _discovery, _taught
 from ._error import ArgumentError, FormatError, UnsupportedError, UsageError
 from ._files import MOST_TASK, read_whole
 from ._imported import path_of
@@ -21,6 +23,7 @@ from ._own_files import load_kept
 from ._paths import is_file, named_options
 from ._policy import Policy, load_task_class
 from ._ranks import Ranks
+from ._recording import Recording
 from ._run import Run
 from ._run_folder import FolderPath, RunFolder, read_config
 from ._shield import Shielding
@@ -139,9 +142,13 @@ def train(task: Any = None, algo: Any = "ppo_lag", steps: Optional[float] = None
     folder; steps, threads, time_budget, callback, progress and the functions may be given.
 
     from_: where the policy starts. A policy, its file or run folder, or "trained" gives the network; options of the task
-    that its run had are used unless others are given. A recording or its file (.npz) is imitated first. teach: a dict of
-    success_only (False), clone_epochs (20), clone_patience (0), clone_rate (1e-3), validation (0.1), and start_share, the
-    share of episodes that begin at a state of the recording: a number, or a pair for the begin and the end of the run.
+    that its run had are used unless others are given. A recording or its file (.npz) is imitated first, and so is a script
+    of demonstrations: "demo" for the task's own, or a .demo file. teach: a dict of success_only (False), clone_epochs (20),
+    clone_patience (0), clone_rate (1e-3), validation (0.1), and start_share, the share of episodes that begin at a state of
+    the recording: a number, or a pair for the begin and the end of the run. Of teachers that act: decisions (640 in each
+    world), noise (0.05), dagger (0 rounds in which the policy acts and the teacher labels; the teacher may then be a policy),
+    beta (0.5), and for an encoder pretrain (0 clouds) and pretrain_epochs (10). These need the command redman, which does
+    the teaching and the first epoch.
 
     callback: a function of the epoch or of (epoch, training), an object of redman.callbacks, or a list of these. A true
     result ends the run; training.set(...) changes options. shield: a redman.Shield checks every decision; True, a dict of
@@ -183,8 +190,21 @@ def _one(given: dict[str, Any]) -> tuple[Run, bool]:
     ranks, budget = _ranks(given["ranks"]), given["time_budget"]
     if budget is not None and not budget > 0:
         raise ArgumentError(f"time_budget: {budget} is not above 0 s")
+    held = contextlib.ExitStack()
+    try:
+        return _held_one(given, calls, ranks, budget, held)
+    finally:
+        held.close()
+
+
+def _held_one(given: dict[str, Any], calls: Calls, ranks: Optional[Ranks], budget: Optional[float],
+                held: contextlib.ExitStack) -> tuple[Run, bool]:
     resume = given["resume"]
     settings = _wanted(given) if resume is None else _continued(given)
+    checkpoint = Path(settings.out) / "checkpoint.rdm"
+    if resume is None and settings.teach is not None and settings.teach.acts:
+        settings, resume = _begun(settings, given, held)
+        checkpoint = resume / "checkpoint.rdm"
     if ranks is not None and resume is None:
         _give_blocks(settings)
     trainer = Trainer(settings, ranks)
@@ -198,13 +218,35 @@ def _one(given: dict[str, Any]) -> tuple[Run, bool]:
         if resume is None:
             trainer.begin(run, folder)
         else:
-            trainer.resume(run, folder, Path(settings.out) / "checkpoint.rdm")
+            trainer.resume(run, folder, checkpoint)
         heard = trainer.go(calls, given["progress"], budget)
     finally:
         if folder is not None:
             folder.close()
         trainer.close()
     return run, heard
+
+
+def _begun(wanted: Settings, given: Mapping[str, Any], held: contextlib.ExitStack) -> tuple[Settings, Path]:
+    """Lets the command teach and learn one epoch. Returns the settings to go on with and the folder to go on from, which is
+    gone when `held` ends if no folder was asked for."""
+    assert wanted.teach is not None
+    task = given["task_file"] or (given["task"] if is_file("task", given["task"]) else wanted.task)
+    _taught.need_command(given, wanted.task_class)
+    spare = Path(held.enter_context(tempfile.TemporaryDirectory()))
+    folder, rows = Path(wanted.out) if wanted.out else spare / "run", spare / "rows.npz"
+    teach: dict[str, Any] = {**({"from": wanted.teach.said} if wanted.teach.said else {}), **wanted.teach.settings}
+    if wanted.teach.said:
+        teach["save_recording"] = rows
+    _taught.begin(_taught.words({**given, "threads": wanted.threads}, os.fspath(task), wanted.algo,
+                                {**dict(wanted.of_task), **dict(wanted.of_algo)}, wanted.limits, wanted.shield, teach),
+                  folder, bool(given["progress"]))
+    settings = settings_of_folder(folder)
+    settings.out = wanted.out
+    if rows.exists():
+        assert settings.teach is not None
+        settings.teach.recording = Recording.load(rows)
+    return settings, folder
 
 
 def _run_of(trainer: Trainer) -> Run:
@@ -257,10 +299,11 @@ def _wanted(given: Mapping[str, Any]) -> Settings:
         limits = limit if limits is None else limits
     of_task, of_algo = split_options(name, algo, asked)
     of_task = list(named_options(dict(of_task)).items())
-    if teach is not None:
+    if teach is not None and not teach.acts:
         of_task = [*teach.task_options(name), *of_task]
         of_algo = [*teach.algo_options(), *of_algo]
-    of_task = [*eyes_of(name, algo, {folded(key): value for key, value in of_algo}), *of_task]
+    if teach is None or not teach.acts:  # the command adds these itself
+        of_task = [*eyes_of(name, algo, {folded(key): value for key, value in of_algo}), *of_task]
     own = Own.wanted(given["reward"], given["costs"])
     columns = list(_discovery.task(name).costs) if own is None or own.costs is None else list(own.costs)
     text = None if task_file is None else read_whole(task_file, "task file", MOST_TASK).decode(errors="replace")
