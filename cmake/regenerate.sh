@@ -17,6 +17,7 @@ if [ -e build/windows/tests/test_golden.exe ]; then
 elif ! git diff --quiet -- tests/golden/tasks.txt; then
   echo "tests/golden/tasks_windows.txt is as it was: run bash cmake/check.sh windows, and this again if test_golden failed there"
 fi
+sh tests/tool/test_tool_data.sh "$build/bin/redman" --write
 "$build/tests/print_layout" > capi/layout.golden
 python3 capi/python/generate_abi.py
 bash cmake/tables.sh "$build/bin/redman"

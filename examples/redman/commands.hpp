@@ -14,6 +14,7 @@ void add_tasks(CLI::App& app, Run& run);
 void add_algos(CLI::App& app, Run& run);
 void add_train(CLI::App& app, Run& run);
 void add_sweep(CLI::App& app, Run& run);
+void add_data(CLI::App& app, Run& run);
 void add_eval(CLI::App& app, Run& run);
 void add_baseline(CLI::App& app, Run& run);
 void add_rollout(CLI::App& app, Run& run);

@@ -155,6 +155,7 @@ constexpr Command kCommands[] = {
     {"train", add_train, kPlay, "redman train --task hand_over_safe_finger --steps 1e6 --out runs/first"},
     {"sweep", add_sweep, kPlay,
      "redman sweep --tasks ball_run,car_run --algos ppo_lag,cpo --seeds 0..4 --out runs/sweep"},
+    {"data", add_data, kPlay, "redman data make hand_over_safe_finger --rows 1e5 --out set.npz"},
     {"eval", add_eval, kPlay, "redman eval --policy runs/first --episodes 100"},
     {"rollout", add_rollout, kPlay, "redman rollout --policy runs/first --episodes 10 --record rollout.npz"},
     {"plan", add_plan, kPlay, "redman plan --task hand_over_safe_finger --method cem --samples 128"},
@@ -196,7 +197,10 @@ void add_commands(CLI::App& app, Run& run, const std::vector<std::string>& words
     CLI::App* command = app.get_subcommand(c.name);
     command->group(c.group)->footer(footer_of(c.example));
     for (CLI::App* below : command->get_subcommands([](CLI::App*) { return true; }))
-      below->footer(footer_of(std::string("redman ") + c.name + ' ' + below->get_name()));
+      if (below->get_footer().empty())
+        below->footer(footer_of(std::string("redman ") + c.name + ' ' + below->get_name()));
+      else  // an example of its own
+        below->footer(footer_of(below->get_footer()));
   }
 }
 

@@ -99,13 +99,14 @@ size_t ArrayShape::item_bytes() const {
   for (const char* known : {"<i8", "<u8", "<f8"})
     if (type == known) return 8;
   if (type == "|u1" || type == "|b1") return 1;
-  if (type.size() < 3 || type.size() > 9 || type.compare(0, 2, "<U") != 0) return 0;
+  const bool bytes = type.compare(0, 2, "|S") == 0;
+  if (type.size() < 3 || type.size() > 9 || (!bytes && type.compare(0, 2, "<U") != 0)) return 0;
   size_t points = 0;
   for (size_t i = 2; i < type.size(); ++i) {
     if (type[i] < '0' || type[i] > '9') return 0;
     points = 10 * points + static_cast<size_t>(type[i] - '0');
   }
-  return 4 * points;
+  return bytes ? points : 4 * points;
 }
 
 uint64_t ArrayShape::bytes() const {

@@ -7,7 +7,7 @@
 namespace tool {
 
 struct ArrayShape {
-  std::string type;             // "<f4", "|u1", "<U12" ...
+  std::string type;             // "<f4", "|u1", "<U12", "|S8" ...
   std::vector<uint64_t> shape;  // {}: one value
   size_t item_bytes() const;    // 0: not a type that is read or written here
   uint64_t bytes() const;       // of all values; saturates

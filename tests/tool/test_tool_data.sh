@@ -1,0 +1,97 @@
+#!/bin/sh
+# test_tool_data.sh TOOL [--write]: `data make` gives the recorded hashes (tests/golden/data.txt), for any number of threads the
+# same bytes, whole episodes on both sides of the limit; `data info` reads them, and what numpy saved again, to the same hash.
+# --write: writes the golden file.
+. "$(dirname "$0")/tool.sh"
+golden=$here/../golden/data.txt
+
+# one NAME FILE: the value of "NAME" in a line of JSON.
+one() { sed -n "s/.*\"$1\":\"*\([^,\"}]*\).*/\1/p" "$2"; }
+
+rows() {
+  for set in 'bandit 300' 'two_state 300' 'ball_run 1000' 'car_circle 1000' 'point_goal1 1000' 'hand_over_safe_finger 1000' \
+             'jenga 200' 'hand_over_wall 400' 'OfflineDroneCircle-v0 900' 'recall 400'; do
+    # shellcheck disable=SC2086
+    set -- $set
+    "$tool" data make "$1" --rows "$2" --seed 3 --out "$1.npz" --json > "$1.json" 2> err || { echo "$1:"; cat err; } >&2
+    echo "$1 $2 $(one hash "$1.json")"
+  done
+}
+rows > now
+grep -q ' $' now && { echo 'a set was not made'; failed=1; }
+if [ "${2:-}" = --write ]; then
+  { echo '# redman data make TASK --rows N --seed 3: hash of the arrays (test_tool_data.sh)'; cat now; } > "$golden"
+  exit 0
+fi
+grep -v '^#' "$golden" | diff - now || { echo 'the hashes of data sets moved; bash cmake/regenerate.sh writes them'; failed=1; }
+
+# The same bytes for any number of threads; others for another seed.
+for threads in 1 2 3; do
+  "$tool" data make hand_over_safe_finger --rows 1000 --seed 3 --threads $threads --out threads.npz > /dev/null || failed=1
+  cmp -s hand_over_safe_finger.npz threads.npz || { echo "$threads threads: other bytes"; failed=1; }
+done
+"$tool" data make ball_run --rows 1000 --seed 4 --out other.npz --json > other.json || failed=1
+[ "$(one hash other.json)" != "$(one hash ball_run.json)" ] || { echo 'another seed gives the same set'; failed=1; }
+
+# Both sides of the limit, and whole episodes.
+for task in ball_run car_circle point_goal1 hand_over_safe_finger; do
+  "$tool" data make $task --rows 6000 --out wide.npz --json > wide.json || failed=1
+  for share in none to_twice,above_twice; do
+    sum=0
+    for name in $(echo "$share" | tr , ' '); do sum=$(awk "BEGIN { print $sum + $(one "$name" wide.json) }"); done
+    awk "BEGIN { exit !($sum > 0.04) }" || { echo "$task: a share of $sum has cost: $share"; failed=1; }
+  done
+  grep -q '"unfinished":\[\]' wide.json || { echo "$task: it has unfinished episodes"; failed=1; }
+  [ "$(one rows wide.json)" -ge 6000 ] || { echo "$task: fewer rows than asked for"; failed=1; }
+done
+
+# The published lengths, by both names.
+"$tool" data make ball_run --preset dsrl --rows 500 --out a.npz --json > a.json || failed=1
+"$tool" data make OfflineBallRun-v0 --rows 500 --json > b.json || failed=1
+cmp -s a.npz OfflineBallRun-v0.npz || { echo 'the published name gives another set than its preset'; failed=1; }
+grep -q '"length":\[100.0,100.0,100.0,100.0,100.0\]' a.json || { echo 'OfflineBallRun-v0 has not 100 rows an episode'; cat a.json; failed=1; }
+"$tool" data make --list | grep -q 'OfflineCarCircle-v0  *car_circle  *300' || { echo 'the list of published sets has no car_circle of 300'; failed=1; }
+
+# What is read has the hash that was made, also when numpy saved it again, packed, or without what only we write.
+for task in two_state ball_run hand_over_safe_finger; do
+  "$tool" data info $task.npz --json > info.json || failed=1
+  [ "$(one hash info.json)" = "$(one hash $task.json)" ] || { echo "$task: info has another hash"; failed=1; }
+done
+if python3 -c 'import numpy' 2> /dev/null; then
+  python3 -c '
+import numpy as np
+a = dict(np.load("two_state.npz"))
+np.savez_compressed("again.npz", **a)
+assert a["obs"].dtype == np.float32 and a["final_obs"].shape == (len(a["source"]), a["obs"].shape[1])
+ends = a["terminated"] | a["truncated"]
+assert ends.sum() == len(a["source"]) and ends[a["episode_begin"][1:] - 1].all()
+assert not (a["terminated"] & a["truncated"]).any()
+cut = {k: v[:-1] if len(v.shape) and len(v) == len(a["obs"]) else v for k, v in a.items()}
+del cut["final_obs"], cut["source"], cut["episode_begin"]
+np.savez("cut.npz", **cut)' || failed=1
+  "$tool" data info again.npz --json > info.json || failed=1
+  [ "$(one hash info.json)" = "$(one hash two_state.json)" ] || { echo 'numpy saved it again: another hash'; failed=1; }
+  "$tool" data info cut.npz > info || failed=1
+  grep -q '1 unfinished' info || { echo 'an episode without an end is not said to be unfinished'; cat info; failed=1; }
+fi
+
+# Recordings of other commands are read too; what is none is refused.
+"$tool" rollout --task two_state --episodes 3 --record rollout.npz > /dev/null || failed=1
+"$tool" data info rollout.npz | grep -q 'in 3 episodes' || { echo 'a recorded rollout is not read'; failed=1; }
+head -c 3000 ball_run.npz > short.npz
+wrong() {
+  status=$1 says=$2
+  shift 2
+  "$tool" data "$@" > out 2> err
+  [ $? -eq "$status" ] || { echo "data $*: the status is not $status"; cat err; failed=1; }
+  grep -q "$says" err || { echo "data $*: the error does not say '$says':"; cat err; failed=1; }
+}
+wrong 1 'not a complete archive' info short.npz
+wrong 1 'nearest is ball_run.npz' info bal_run.npz
+wrong 2 'nearest is ball_run' make bal_run
+wrong 2 'nearest is OfflineBallRun-v0' make OfflineBalRun-v0
+wrong 2 'no set of task jenga' make jenga --preset dsrl
+wrong 2 'end in .npz' make ball_run --out set.hdf5
+wrong 2 'are in every mixture' make ball_run --policy random
+wrong 2 'rows' make ball_run --rows 0
+exit $failed
