@@ -10,8 +10,8 @@ namespace rdm {
 namespace {
 
 const AlgoRow* const kRows[] = {
-    &kPpo, &kTrpo, &kPpoLag, &kTrpoLag, &kCppoPid, &kCpo,   &kPcpo,     &kFocops, &kP3o,
-    &kIpo, &kPdo,  &kRcpo,   &kCup,     &kCrpo,    &kMappo, &kMappoLag, &kHappo,  &kMacpo,
+    &kPpo, &kTrpo, &kPpoLag, &kTrpoLag, &kCppoPid, &kCpo,      &kPcpo,  &kFocops, &kP3o,  &kIpo,
+    &kPdo, &kRcpo, &kCup,    &kCrpo,    &kMappo,   &kMappoLag, &kHappo, &kMacpo,  &kIppo, &kIppoLag,
 };
 
 }  // namespace

@@ -9,14 +9,15 @@ namespace rdm {
 // One per algorithm file.
 extern const AlgoRow kPpo, kTrpo, kPpoLag, kTrpoLag, kCppoPid, kCpo, kPcpo, kFocops, kP3o, kIpo, kPdo, kRcpo,
     kCup, kCrpo;
-extern const AlgoRow kMappo, kMappoLag, kHappo, kMacpo;
+extern const AlgoRow kMappo, kMappoLag, kHappo, kMacpo, kIppo, kIppoLag;
 
 // The row of an algorithm whose class is T.
 template <class T, class Rows>
 constexpr AlgoRow make_algo_row(const char* name, const char* summary, const Rows& options, Costs costs,
-                                void (*adapt)(ResolvedAgentConfig&) = nullptr,
-                                const AlgoRow* alone = nullptr) {
+                                void (*adapt)(ResolvedAgentConfig&) = nullptr, const AlgoRow* alone = nullptr,
+                                bool own_critics = false) {
   AlgoRow row{};
+  row.own_critics = own_critics;
   row.adapt = adapt;
   row.alone = alone;
   row.info = {name, summary, options.data(), static_cast<int32_t>(options.size())};

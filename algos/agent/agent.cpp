@@ -34,13 +34,17 @@ bool same_group(const ActorGroup& a, const ActorGroup& b) {
 size_t Agent::memory(const AgentConfig& config) {
   ResolvedAgentConfig resolved = resolve_config(config);
   const AlgoRow& row = *resolved.row;
-  size_t held = resolved.options.held_bytes() +
-                (resolved.actor_columns.capacity() + resolved.critic_columns.capacity() +
-                 resolved.history_columns.capacity()) *
-                    sizeof(int32_t) +
-                resolved.groups.capacity() * sizeof(ActorGroup) +
-                resolved.group_specs.capacity() * sizeof(GroupSpec);
-  for (const GroupSpec& g : resolved.group_specs) held += g.columns.capacity() * sizeof(int32_t);
+  size_t held =
+      resolved.options.held_bytes() +
+      (resolved.actor_columns.capacity() + resolved.critic_columns.capacity() +
+       resolved.history_columns.capacity()) *
+          sizeof(int32_t) +
+      (resolved.groups.capacity() + resolved.reward_critics.capacity() + resolved.cost_critics.capacity()) *
+          sizeof(ActorGroup);
+  for (const Vector<GroupSpec>* specs : {&resolved.group_specs, &resolved.critic_specs}) {
+    held += specs->capacity() * sizeof(GroupSpec);
+    for (const GroupSpec& g : *specs) held += g.columns.capacity() * sizeof(int32_t);
+  }
   return row.measure(std::move(resolved)) + held + Workers::memory(config.hooks, config.num_threads);
 }
 

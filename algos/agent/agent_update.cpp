@@ -265,7 +265,7 @@ void Agent::begin_epoch(const JudgedCosts&, int32_t) {
 
 void Agent::follow_reward() {
   const Rollout& r = rollout();
-  const auto n = static_cast<size_t>(r.samples());
+  const size_t n = r.valued_rows();
   std::memcpy(r.gain, r.advantage, n * sizeof(float));
   std::memset(r.linear, 0, n * sizeof(float));
 }

@@ -183,7 +183,7 @@ double Learner::critic_gradient(Workspace& workspace, Networks::Index net, const
       loss += static_cast<double>(error) * static_cast<double>(error);
     }
   nets_->backward(net, workspace.obs, rows, workspace.critic, workspace.dout, grad);
-  return loss;
+  return loss / nets_->num_critics;
 }
 
 void Learner::add_penalties() {
@@ -224,11 +224,14 @@ void Learner::step(double actor_rate, double actor_share) {
       grad_[j] = static_cast<float>(scale * static_cast<double>(grad_[j]));
     bound = 0;
   }
+  const auto in_groups = [&](int32_t net) {
+    return net == Networks::kActor ? nets_->num_groups > 0 : nets_->critic[net] != nullptr;
+  };
   AdamStep steps[3];
   workers_->spread(last - first, [&](int32_t i) {
     const int32_t net = first + i;
     Block& b = nets_->block[net];
-    if (net == Networks::kActor && nets_->num_groups) return;
+    if (in_groups(net)) return;
     const double rate = net == Networks::kActor ? actor_rate : critic_rate;
     steps[net] = adam_begin(b.adam, nets_->params + b.offset, grad_ + b.offset, rate, bound);
   });
@@ -238,33 +241,40 @@ void Learner::step(double actor_rate, double actor_share) {
       adam_range(steps[net], std::max(low, b.offset) - b.offset, std::max(high, b.offset) - b.offset);
     }
   });
-  if (first == Networks::kActor && nets_->num_groups) step_groups(actor_rate, bound);
+  for (int32_t net = first; net < last; ++net)
+    if (in_groups(net)) step_groups(net, net == Networks::kActor ? actor_rate : critic_rate, bound);
   for (int32_t net = first; net < last; ++net) skipped_ += !std::isfinite(steps[net].norm);
   if (policy_) clamp_log_std(*nets_);
 }
 
-// A step of each group that learns, its norm, its count of steps and its bound its own: the entries of the log
-// deviations, then the network.
-void Learner::step_groups(double rate, double bound) {
-  const int32_t first = nets_->first_group();
+// A step of each group that learns, its norm, its count of steps and its bound its own: of an actor the entries of the
+// log deviations, then the network; of critics the network.
+void Learner::step_groups(int32_t net, double rate, double bound) {
+  const bool acts = net == Networks::kActor;
+  const int32_t first = acts ? nets_->first_group() : 0,
+                last = acts ? nets_->last_group() : nets_->num_critics;
+  const ActorGroup* groups = acts ? nets_->group : nets_->critic[net];
+  int64_t* taken = acts ? nets_->group_steps : nets_->critic_steps[net];
+  const Block& block = nets_->block[net];
   double norms[kMaxGroups];
-  workers_->spread(nets_->last_group() - first, [&](int32_t i) {
+  workers_->spread(last - first, [&](int32_t i) {
     const int32_t number = first + i;
-    const ActorGroup& g = nets_->group[number];
-    const Block& actor = nets_->block[Networks::kActor];
-    const size_t net = nets_->std_size + g.offset, std = static_cast<size_t>(g.first);
-    const size_t size = g.shape.num_params(), stds = nets_->state_std() ? 0 : static_cast<size_t>(g.count);
-    const auto part = [&](size_t at, size_t count) {
-      return Adam{count, actor.adam.m + at, actor.adam.v + at, nets_->group_steps[number]};
+    const ActorGroup& g = groups[number];
+    const size_t at = nets_->net_offset(net) - block.offset + g.offset, std = static_cast<size_t>(g.first);
+    const size_t size = g.shape.num_params(),
+                 stds = !acts || nets_->state_std() ? 0 : static_cast<size_t>(g.count);
+    const auto part = [&](size_t from, size_t count) {
+      return Adam{count, block.adam.m + from, block.adam.v + from, taken[number]};
     };
-    Adam of_net = part(net, size), of_std = part(std, stds);
-    const double norm = std::sqrt(sum_squares(grad_ + std, stds) + sum_squares(grad_ + net, size));
+    float *const params = nets_->params + block.offset, *const grad = grad_ + block.offset;
+    Adam of_net = part(at, size), of_std = part(std, stds);
+    const double norm = std::sqrt(sum_squares(grad + std, stds) + sum_squares(grad + at, size));
     norms[i] = norm;
-    adam_range(adam_begin(of_net, nets_->params + net, grad_ + net, norm, rate, bound), 0, size);
-    adam_range(adam_begin(of_std, nets_->params + std, grad_ + std, norm, rate, bound), 0, stds);
-    nets_->group_steps[number] = of_net.t;
+    adam_range(adam_begin(of_net, params + at, grad + at, norm, rate, bound), 0, size);
+    adam_range(adam_begin(of_std, params + std, grad + std, norm, rate, bound), 0, stds);
+    taken[number] = of_net.t;
   });
-  for (int32_t i = 0; first + i < nets_->last_group(); ++i) skipped_ += !std::isfinite(norms[i]);
+  for (int32_t i = 0; first + i < last; ++i) skipped_ += !std::isfinite(norms[i]);
 }
 
 void Learner::measure_rows(Workspace& workspace, const int32_t* order, int32_t rows) const {
@@ -278,13 +288,20 @@ void Learner::measure_rows(Workspace& workspace, const int32_t* order, int32_t r
     const auto at = static_cast<size_t>(order[i]);
     const float *mean = chunk.mean_of(i), *log_std = chunk.log_std_of(i);
     workspace.surrogate.kl += sample_kl(r, at, chunk.first_part, chunk.last_part, mean, log_std);
-    const double ratio = sample_ratio(r, at, chunk.first_part, chunk.last_part, mean, log_std);
-    workspace.surrogate.gain += ratio * static_cast<double>(r.gain[at] + r.linear[at]);
-    const double bounded =
-        std::clamp(ratio, 1.0 - static_cast<double>(clip_), 1.0 + static_cast<double>(clip_));
-    for (size_t k = 0; k < costs; ++k) {
-      const auto cost = static_cast<double>(r.cost_advantage[at * costs + k]);
-      workspace.surrogate.cost[k] += clip_ > 0 ? std::max(ratio * cost, bounded * cost) : ratio * cost;
+    for (size_t v = 0; v < r.critics; ++v) {  // of critics of groups the mean, each with its group's ratio
+      const double ratio = r.critics > 1
+                               ? part_ratio(r, at, v, mean, log_std)
+                               : sample_ratio(r, at, chunk.first_part, chunk.last_part, mean, log_std);
+      const size_t row = at * r.critics + v;
+      const auto share = static_cast<double>(r.critics);
+      workspace.surrogate.gain += ratio * static_cast<double>(r.gain[row] + r.linear[row]) / share;
+      const double bounded =
+          std::clamp(ratio, 1.0 - static_cast<double>(clip_), 1.0 + static_cast<double>(clip_));
+      for (size_t k = 0; k < costs; ++k) {
+        const auto cost = static_cast<double>(r.cost_advantage[row * costs + k]);
+        workspace.surrogate.cost[k] +=
+            (clip_ > 0 ? std::max(ratio * cost, bounded * cost) : ratio * cost) / share;
+      }
     }
   }
 }

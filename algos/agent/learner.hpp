@@ -128,7 +128,7 @@ class Learner {
   void end_gradient();
   void end_measure();
   void add_penalties();
-  void step_groups(double rate, double bound);
+  void step_groups(int32_t net, double rate, double bound);
   double joint_scale(int32_t first, int32_t last) const;
   BatchSums sums_of_blocks();
 

@@ -21,6 +21,7 @@ struct AlgoRow {
   void (*adapt)(ResolvedAgentConfig& resolved);  // defaults that hang on the limits, by set_default; or null
   // The algorithm that it is for one agent: what tasks and presets set for that one holds for it too; or null.
   const AlgoRow* alone = nullptr;
+  bool own_critics = false;  // each group of its team has critics of its own
 };
 const AlgoRow& algo_row(int32_t index);
 

@@ -53,16 +53,22 @@ Workspace carve_workspace(Arena& arena, const ResolvedAgentConfig& resolved, siz
   Workspace workspace;
   workspace.rows = resolved.chunk_rows;
   const auto rows = static_cast<size_t>(workspace.rows);
-  const auto widest = static_cast<size_t>(std::max(resolved.actor.out, resolved.cost_critic.out));
+  const auto widest = static_cast<size_t>(
+      std::max({resolved.actor.out, resolved.cost_critic.out, resolved.reward_critic.out}));
   workspace.sequences = carve_sequences(arena, resolved);
   const int32_t steps = workspace.sequences.most * resolved.memory_chunk();
   const int32_t acting = std::max(workspace.rows, steps);
   workspace.actor = carve_actor_scratch(arena, resolved, acting);
-  workspace.critic = resolved.groups.empty() && covers(resolved.actor, resolved.cost_critic)
-                         ? workspace.actor
-                         : carve_mlp_scratch(arena, resolved.cost_critic, workspace.rows);
-  const size_t picked = resolved.critic_columns.size();
-  workspace.critic.picked = picked ? arena.make<float>(rows * picked) : nullptr;
+  if (!resolved.cost_critics.empty()) {
+    workspace.critic = carve_group_scratch(arena, resolved.cost_critics, workspace.rows);
+  } else {
+    static_cast<MlpScratch&>(workspace.critic) =
+        resolved.groups.empty() && covers(resolved.actor, resolved.cost_critic)
+            ? workspace.actor
+            : carve_mlp_scratch(arena, resolved.cost_critic, workspace.rows);
+    const size_t picked = resolved.critic_columns.size();
+    workspace.critic.picked = picked ? arena.make<float>(rows * picked) : nullptr;
+  }
   workspace.obs = arena.make<float>(static_cast<size_t>(acting) * resolved.seen_dim());
   workspace.out = arena.make<float>(rows * widest);
   workspace.dout = arena.make<float>(rows * widest);

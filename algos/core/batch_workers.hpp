@@ -91,7 +91,7 @@ struct SequenceSpace {
 struct Workspace {
   int32_t rows = 0;
   ActorScratch actor;
-  MlpScratch critic;
+  ActorScratch critic;
   SequenceSpace sequences;
   float* obs = nullptr;                   // [rows][seen_dim]; with sequences as many as these have steps
   float *out = nullptr, *dout = nullptr;  // [rows][widest output]

@@ -14,6 +14,7 @@ constexpr const char* kGruNames[] = {"memory.input.weight", "memory.input.bias",
 constexpr int32_t kGruTensors = 4;
 constexpr uint32_t kEyesStream = 3;    // of initial weights, behind those of the three networks
 constexpr uint32_t kGroupsStream = 4;  // of the second group's, and on; the first has the actor's
+constexpr uint32_t kCriticsStream = kGroupsStream + kMaxGroups;  // likewise of critics, of each kind
 
 // Bound on what a network of a loaded state may give: far beyond any that learns, and a float still holds its
 // square.
@@ -50,6 +51,13 @@ Networks carve_networks(Arena& arena, const ResolvedAgentConfig& resolved) {
   n.num_groups = resolved.num_groups();
   n.group = n.num_groups ? resolved.groups.data() : nullptr;
   n.group_steps = arena.make<int64_t>(static_cast<size_t>(n.num_groups));
+  n.num_critics = resolved.num_critics();
+  if (!resolved.reward_critics.empty()) {
+    n.critic[Networks::kReward] = resolved.reward_critics.data();
+    n.critic[Networks::kCost] = resolved.cost_critics.data();
+    for (int32_t i = Networks::kReward; i <= Networks::kCost; ++i)
+      n.critic_steps[i] = arena.make<int64_t>(static_cast<size_t>(n.num_critics));
+  }
   n.actor_params = resolved.actor_params();
   n.eyes = resolved.eyes;
   n.frozen = resolved.frozen;
@@ -62,7 +70,7 @@ Networks carve_networks(Arena& arena, const ResolvedAgentConfig& resolved) {
   n.input_bound = resolved.shared.normalize_obs ? resolved.shared.obs_clip : 1e3;
   for (int32_t i = 0; i < n.count; ++i) {
     n.block[i].offset = n.size;
-    n.block[i].size = n.shape[i].num_params();
+    n.block[i].size = n.critic[i] ? group_params(n.critic[i], n.num_critics) : n.shape[i].num_params();
     if (i == Networks::kActor) n.block[i].size = n.actor_params + n.std_size + n.eyes.num_params();
     n.size += (n.block[i].size + 15) / 16 * 16;
   }
@@ -77,23 +85,27 @@ Networks carve_networks(Arena& arena, const ResolvedAgentConfig& resolved) {
   return n;
 }
 
-ActorScratch carve_actor_scratch(Arena& arena, const ResolvedAgentConfig& resolved, int32_t rows) {
+ActorScratch carve_group_scratch(Arena& arena, const Vector<ActorGroup>& groups, int32_t rows) {
   ActorScratch s;
   const auto n = static_cast<size_t>(rows);
-  if (const auto groups = static_cast<size_t>(resolved.num_groups())) {
-    s.rows = rows;
-    s.group = arena.make<MlpScratch>(groups);
-    int32_t widest = 0;
-    for (size_t g = 0; g < groups; ++g) {
-      const ActorGroup& group = resolved.groups[g];
-      MlpScratch own = carve_mlp_scratch(arena, group.shape, rows);
-      own.picked = arena.make<float>(group.columns ? n * static_cast<size_t>(group.shape.in) : 0);
-      if (s.group) s.group[g] = own;
-      widest = std::max(widest, group.shape.out);
-    }
-    s.part = arena.make<float>(n * static_cast<size_t>(widest));
-    return s;
+  s.rows = rows;
+  s.group = arena.make<MlpScratch>(groups.size());
+  int32_t widest = 0;
+  for (size_t g = 0; g < groups.size(); ++g) {
+    const ActorGroup& group = groups[g];
+    MlpScratch own = carve_mlp_scratch(arena, group.shape, rows);
+    own.picked = arena.make<float>(group.columns ? n * static_cast<size_t>(group.shape.in) : 0);
+    if (s.group) s.group[g] = own;
+    widest = std::max(widest, group.shape.out);
   }
+  s.part = arena.make<float>(n * static_cast<size_t>(widest));
+  return s;
+}
+
+ActorScratch carve_actor_scratch(Arena& arena, const ResolvedAgentConfig& resolved, int32_t rows) {
+  if (resolved.num_groups() > 0) return carve_group_scratch(arena, resolved.groups, rows);
+  ActorScratch s;
+  const auto n = static_cast<size_t>(rows);
   static_cast<MlpScratch&>(s) = carve_mlp_scratch(arena, resolved.actor, rows);
   if (!resolved.actor_columns.empty() || resolved.sees())
     s.picked = arena.make<float>(n * static_cast<size_t>(resolved.actor.in));
@@ -141,6 +153,28 @@ void Networks::forward_groups(const float* weights, const float* x, int32_t rows
     spread_outputs(g, scratch.part, rows, width, y);
   }
   if (state_std()) bound_std(rows, y);
+}
+
+void Networks::forward_critics(int32_t i, const float* x, int32_t rows, const ActorScratch& scratch,
+                               float* y) const {
+  for (int32_t k = 0; k < num_critics; ++k) {
+    const ActorGroup& g = critic[i][k];
+    const MlpScratch& own = scratch.group[k];
+    if (g.columns) pick_columns(x, rows, obs_dim, g.columns, g.shape.in, own.picked);
+    mlp_forward(g.shape, net(i) + g.offset, g.columns ? own.picked : x, rows, own, scratch.part);
+    spread_outputs(g, scratch.part, rows, static_cast<size_t>(shape[i].out), y);
+  }
+}
+
+void Networks::backward_critics(int32_t i, const float* x, int32_t rows, const ActorScratch& scratch,
+                                const float* dy, float* grad) const {
+  for (int32_t k = 0; k < num_critics; ++k) {
+    const ActorGroup& g = critic[i][k];
+    const MlpScratch& own = scratch.group[k];
+    gather_outputs(g, dy, rows, static_cast<size_t>(shape[i].out), scratch.part);
+    mlp_backward(g.shape, net(i) + g.offset, g.columns ? own.picked : x, rows, own, scratch.part,
+                 grad + net_offset(i) + g.offset);
+  }
 }
 
 void Networks::forward_memory_with(const float* weights, const float* x, const MemorySteps& m,
@@ -203,7 +237,13 @@ void init_networks(const Networks& n, const ResolvedAgentConfig& resolved) {
   for (int32_t i = 0; i < n.count; ++i) {
     Stream stream(resolved.config.seed, static_cast<uint32_t>(i), Purpose::kInit);
     const double last = i == Networks::kActor ? resolved.shared.last_layer_scale : 1;
-    if (i > 0 || !n.num_groups)
+    for (int32_t k = 0; n.critic[i] && k < n.num_critics; ++k) {
+      const auto number =
+          static_cast<uint32_t>(k == 0 ? i : static_cast<int32_t>(kCriticsStream) + (i - 1) * kMaxGroups + k);
+      Stream own(resolved.config.seed, number, Purpose::kInit);
+      mlp_init(n.critic[i][k].shape, own, 1, n.net(i) + n.critic[i][k].offset);
+    }
+    if (!n.critic[i] && (i > 0 || !n.num_groups))
       recurrent_init({n.shape[i], i == Networks::kActor ? n.gru : GruShape()}, stream,
                      static_cast<float>(last), n.net(i));
   }
@@ -298,7 +338,8 @@ void schedule_std(const Networks& n, const SharedOptions& o, int32_t done) {
 int32_t Networks::num_tensors() const {
   int32_t tensors = state_std() ? 0 : 1;
   for (int32_t g = 0; g < num_groups; ++g) tensors += 2 * group[g].shape.num_layers();
-  for (int32_t i = num_groups ? 1 : 0; i < count; ++i) tensors += 2 * shape[i].num_layers();
+  for (int32_t i = num_groups ? 1 : 0; i < count; ++i)
+    tensors += 2 * shape[i].num_layers() * (i ? num_critics : 1);
   return tensors + (gru.units ? kGruTensors : 0) + (eyes.points ? 2 * eyes.mlp.num_layers() : 0);
 }
 
@@ -318,9 +359,16 @@ void Networks::visit(StateIo& io) {
       most = std::max(most, mlp_bound(group[g].shape, From{list, at + group[g].offset}, input_bound));
     return most;
   };
+  const auto critic_bound = [&](int32_t i) {
+    if (!critic[i]) return mlp_bound(shape[i], From{p, net_offset(i)}, input_bound);
+    double most = 0;
+    for (int32_t k = 0; k < num_critics; ++k)
+      most = std::max(
+          most, mlp_bound(critic[i][k].shape, From{p, net_offset(i) + critic[i][k].offset}, input_bound));
+    return most;
+  };
   for (int32_t i = 0; p && i < count; ++i)
-    io.require((i == kActor ? actor_bound(p, std_size)
-                            : mlp_bound(shape[i], From{p, net_offset(i)}, input_bound)) <= kMaxOutput,
+    io.require((i == kActor ? actor_bound(p, std_size) : critic_bound(i)) <= kMaxOutput,
                "a network whose outputs may be too large");
   if (average) {
     io.section("MEAN");
@@ -337,6 +385,8 @@ void Networks::visit(StateIo& io) {
   }
   if (num_groups) io.section("GRPS");
   for (int32_t g = 0; g < num_groups; ++g) io.counter(group_steps[g]);
+  for (int32_t i = kReward; i < count; ++i)
+    for (int32_t k = 0; critic[i] && k < num_critics; ++k) io.counter(critic_steps[i][k]);
 }
 
 bool find_tensor(const Networks& n, int32_t index, char* name, TensorInfo* out) {
@@ -356,17 +406,25 @@ bool find_tensor(const Networks& n, int32_t index, char* name, TensorInfo* out) 
     std::snprintf(name, kTensorNameSize, "actor.log_std");
     return set(n.action_dim, 1, n.log_std());
   }
-  for (int32_t g = 0; g < n.num_groups; ++g) {
-    const MlpShape& s = n.group[g].shape;
-    const int32_t tensors = 2 * s.num_layers();
-    if (index < tensors) {
-      char net[kGroupNameSize + 8];
-      std::snprintf(net, sizeof net, "actor.%s", n.group[g].name);
-      return layer(net, s, n.net(Networks::kActor) + n.group[g].offset);
+  const auto in_groups = [&](int32_t i, const ActorGroup* groups, int32_t count) {
+    for (int32_t g = 0; g < count; ++g) {
+      const MlpShape& s = groups[g].shape;
+      const int32_t tensors = 2 * s.num_layers();
+      if (index < tensors) {
+        char net[kGroupNameSize + 16];
+        std::snprintf(net, sizeof net, "%s.%s", kNames[i], groups[g].name);
+        return layer(net, s, n.net(i) + groups[g].offset);
+      }
+      index -= tensors;
     }
-    index -= tensors;
-  }
+    return false;
+  };
+  if (in_groups(Networks::kActor, n.group, n.num_groups)) return true;
   for (int32_t i = n.num_groups ? 1 : 0; i < n.count; ++i) {
+    if (n.critic[i]) {
+      if (in_groups(i, n.critic[i], n.num_critics)) return true;
+      continue;
+    }
     const MlpShape& s = n.shape[i];
     const int32_t tensors = 2 * s.num_layers();
     if (index >= tensors) {

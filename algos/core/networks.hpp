@@ -10,6 +10,8 @@
 // With option memory a GRU stands before the actor's last layer: its state comes from whoever runs it. With option
 // history the rows are stacked ones (rollout/memory.hpp).
 //
+// Critics of an algorithm whose groups have their own stand likewise in the block of their kind.
+//
 // With std_mode=state there is no such deviation: the actor's network gives, behind each row's means, its log
 // deviations.
 #pragma once
@@ -41,6 +43,8 @@ struct MemorySteps {
   const uint8_t* clear = nullptr;  // [steps][rows]
 };
 ActorScratch carve_actor_scratch(Arena& arena, const ResolvedAgentConfig& resolved, int32_t rows);
+// Of networks in groups.
+ActorScratch carve_group_scratch(Arena& arena, const Vector<ActorGroup>& groups, int32_t rows);
 
 // Order: actor (log_std padded to 16 with zeros, then the network, then its eyes), reward critic, cost
 // critic.
@@ -54,10 +58,14 @@ struct Networks {
   const ActorGroup* group = nullptr;  // [num_groups] of the actor; none: it is one network
   int32_t num_groups = 0;
   int64_t* group_steps = nullptr;  // [num_groups] of Adam
-  int32_t focus = -1;              // the group that learns now, -1: all
-  size_t actor_params = 0;         // of the actor's networks, its eyes apart
-  PointNetShape eyes;              // of the actor; points 0: none
-  bool frozen = false;             // eyes do not learn
+  // Critics of groups [num_critics] of each kind, by Index; null: one serves all.
+  const ActorGroup* critic[3] = {};
+  int32_t num_critics = 1;
+  int64_t* critic_steps[3] = {};  // [num_critics] of Adam
+  int32_t focus = -1;             // the group that learns now, -1: all
+  size_t actor_params = 0;        // of the actor's networks, its eyes apart
+  PointNetShape eyes;             // of the actor; points 0: none
+  bool frozen = false;            // eyes do not learn
   Block block[3];
   int32_t count = 0;    // 2 without cost critic
   size_t size = 0;      // of params
@@ -101,7 +109,8 @@ struct Networks {
   // y = network i of the rows x [rows][obs_dim], and the gradient of its block, grad laid out as params; x
   // and scratch as in the forward pass before. The actor's log deviations are those of the innovation, within
   // their bounds.
-  void forward(int32_t i, const float* x, int32_t rows, const MlpScratch& scratch, float* y) const {
+  void forward(int32_t i, const float* x, int32_t rows, const ActorScratch& scratch, float* y) const {
+    if (critic[i]) return forward_critics(i, x, rows, scratch, y);
     forward_with(net(i), i, x, rows, scratch, y);
   }
   // The same of an actor that may have eyes, for these clouds of the rows; and of the actor that others get
@@ -140,8 +149,9 @@ struct Networks {
   // Features of the rows in the scratch of the last forward pass, feature_step() apart.
   const float* features(const ActorScratch& scratch) const { return scratch.picked + actor_entries(); }
   size_t feature_step() const { return static_cast<size_t>(shape[kActor].in); }
-  void backward(int32_t i, const float* x, int32_t rows, const MlpScratch& scratch, const float* dy,
+  void backward(int32_t i, const float* x, int32_t rows, const ActorScratch& scratch, const float* dy,
                 float* grad) const {
+    if (critic[i]) return backward_critics(i, x, rows, scratch, dy, grad);
     mlp_backward(shape[i], net(i), seen(i, x, scratch), rows, scratch, dy, grad + net_offset(i));
   }
   // dy along a direction of the network's parameters, likewise.
@@ -163,6 +173,9 @@ struct Networks {
   }
   void forward_actor_with(const float* weights, const float* x, const PointRows& clouds, int32_t rows,
                           const ActorScratch& scratch, float* y) const;
+  void forward_critics(int32_t i, const float* x, int32_t rows, const ActorScratch& scratch, float* y) const;
+  void backward_critics(int32_t i, const float* x, int32_t rows, const ActorScratch& scratch, const float* dy,
+                        float* grad) const;
   void forward_groups(const float* weights, const float* x, int32_t rows, const ActorScratch& scratch,
                       float* y) const;
   void forward_memory_with(const float* weights, const float* x, const MemorySteps& m,
@@ -188,7 +201,7 @@ void restore_actor(const Networks& n);
 // With std_schedule=linear the deviation for the epoch that follows `done` finished ones.
 void schedule_std(const Networks& n, const SharedOptions& options, int32_t done);
 
-inline constexpr int32_t kTensorNameSize = 64;
+inline constexpr int32_t kTensorNameSize = 72;
 // Tensor `index` in the order above, names "actor.log_std", "actor.0.weight", "cost_critic.2.bias"; of an
 // actor in groups "actor.NAME.0.weight".
 bool find_tensor(const Networks& n, int32_t index, char* name, TensorInfo* out);

@@ -165,13 +165,14 @@ void resolve_eyes(ResolvedAgentConfig& resolved) {
 }
 
 // Those of `own` that are in `seen`; empty lists are all entries, and so is the result where it is all.
-Vector<int32_t> both(const Vector<int32_t>& own, const Vector<int32_t>& seen, const char* group) {
+Vector<int32_t> both(const Vector<int32_t>& own, const Vector<int32_t>& seen, const char* key,
+                     const char* group) {
   if (own.empty() || seen.empty()) return own.empty() ? seen : own;
   Vector<int32_t> out;
   out.reserve(std::min(own.size(), seen.size()));
   std::set_intersection(own.begin(), own.end(), seen.begin(), seen.end(), std::back_inserter(out));
   if (out.empty())
-    fail(Code::kArgument, "groups: actor_obs leaves %s no entry of the observation", Quoted(group).text);
+    fail(Code::kArgument, "groups: %s leaves %s no entry of the observation", key, Quoted(group).text);
   return out;
 }
 
@@ -185,7 +186,16 @@ void resolve_groups(ResolvedAgentConfig& resolved) {
   if (specs.empty()) return;
   if (specs.size() > 1 && *o.encoder)
     fail(Code::kUnsupported, "encoder: an actor of several groups has none; groups=all has one network");
-  for (GroupSpec& s : specs) s.columns = both(s.columns, resolved.actor_columns, s.name);
+  if (resolved.row->own_critics) {
+    resolved.critic_specs = specs;
+    for (GroupSpec& s : resolved.critic_specs)
+      s.columns = both(s.columns, resolved.critic_columns, "critic_obs", s.name);
+    if (specs.size() == 1) {
+      resolved.critic_columns = std::move(resolved.critic_specs[0].columns);
+      resolved.critic_specs = {};
+    }
+  }
+  for (GroupSpec& s : specs) s.columns = both(s.columns, resolved.actor_columns, "actor_obs", s.name);
   if (specs.size() == 1) {
     resolved.actor_columns = std::move(specs[0].columns);
     return;
@@ -277,8 +287,8 @@ void resolve_networks(ResolvedAgentConfig& resolved) {
     return static_cast<int32_t>(seen.empty() ? resolved.seen_dim() : seen.size());
   };
   resolved.actor_columns = columns("actor_obs", o.actor_obs);
-  resolve_groups(resolved);
   resolved.critic_columns = columns("critic_obs", o.critic_obs);
+  resolve_groups(resolved);
   resolve_history(resolved);
   const int32_t actor_in = inputs(resolved.actor_columns), critic_in = inputs(resolved.critic_columns);
   resolve_eyes(resolved);
@@ -289,10 +299,26 @@ void resolve_networks(ResolvedAgentConfig& resolved) {
   resolved.actor = parse_shape("hidden", o.hidden, o.activation, actor_in + resolved.eyes.features(),
                                o.state_std ? 2 * c.action_dim : c.action_dim);
   resolve_memory(resolved);
-  resolved.reward_critic = critic(1);
-  resolved.cost_critic = critic(std::max(resolved.num_limited, 1));
+  const int32_t costs = std::max(resolved.num_limited, 1);
+  for (const GroupSpec& s : resolved.critic_specs) {
+    const auto add = [&](Vector<ActorGroup>& critics, int32_t outputs) {
+      ActorGroup g;
+      std::memcpy(g.name, s.name, sizeof g.name);
+      g.first = static_cast<int32_t>(critics.size()) * outputs, g.count = outputs;
+      g.offset = group_params(critics.data(), static_cast<int32_t>(critics.size()));
+      g.columns = s.columns.empty() ? nullptr : s.columns.data();
+      g.shape = critic(outputs);
+      g.shape.in = s.columns.empty() ? c.obs_dim : static_cast<int32_t>(s.columns.size());
+      critics.push_back(g);
+    };
+    add(resolved.reward_critics, 1);
+    add(resolved.cost_critics, costs);
+  }
+  resolved.reward_critic = critic(resolved.num_critics());
+  resolved.cost_critic = critic(resolved.num_critics() * costs);
   check_mlp_shape(resolved.actor);
   check_mlp_shape(resolved.reward_critic);
+  check_mlp_shape(resolved.cost_critic);
 }
 
 // Blocks of all ranks into this one's.

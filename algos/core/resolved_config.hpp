@@ -41,6 +41,10 @@ struct ResolvedAgentConfig {
   // `actor` then is of all of them: every entry of the row, all actions.
   Vector<ActorGroup> groups;
   Vector<GroupSpec> group_specs;
+  // Of an algorithm whose groups have critics of their own: those of the reward and of the costs, in the groups' order,
+  // and what each sees. The shapes of the critics then are of all of them.
+  Vector<ActorGroup> reward_critics, cost_critics;
+  Vector<GroupSpec> critic_specs;
   int32_t num_limited = 0;         // limited cost columns; 0 for algorithms without costs
   bool values_costs = false;       // they have a critic
   int32_t column[kMaxCosts] = {};  // [num_limited] column of each
@@ -56,6 +60,8 @@ struct ResolvedAgentConfig {
   float log_share = 0;         // ln of the innovation's share of the standard deviation
 
   int32_t num_groups() const { return static_cast<int32_t>(groups.size()); }
+  // Critics of a kind, each of which values every row.
+  int32_t num_critics() const { return std::max(1, static_cast<int32_t>(reward_critics.size())); }
   // Of the actor's networks, its eyes apart.
   size_t actor_params() const {
     return groups.empty() ? RecurrentShape{actor, gru}.num_params()

@@ -15,7 +15,8 @@ void RatioLoss::add(const PolicyChunk& chunk) const {
     const double share = 1 / static_cast<double>(chunk.last_part - chunk.first_part);
     for (size_t g = chunk.first_part; g < chunk.last_part; ++g) {
       const auto [first, count] = r.part(g);
-      const SampleLoss l = sample(r, at, static_cast<float>(part_ratio(r, at, g, mean, log_std)));
+      const SampleLoss l =
+          sample(r, r.valued(at, g), static_cast<float>(part_ratio(r, at, g, mean, log_std)));
       gaussian_log_prob_grad(mean + first, log_std + first, action + first, static_cast<int32_t>(count),
                              chunk.scale * l.slope, chunk.dmean_of(i) + first, chunk.dlog_std_of(i) + first);
       chunk.sums->loss += share * static_cast<double>(l.loss);

@@ -15,7 +15,7 @@ class RatioLoss : public PolicyLoss {
   void add(const PolicyChunk& chunk) const final;
 
  protected:
-  // Of row `at` of the rollout.
+  // Of row `at` of what the actor climbs (Rollout::valued).
   virtual SampleLoss sample(const Rollout& r, size_t at, float ratio) const = 0;
   ~RatioLoss() = default;
 };

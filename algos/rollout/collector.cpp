@@ -72,8 +72,9 @@ void Collector::carve(Arena& arena, const ResolvedAgentConfig& resolved) {
   segments_ = arena.make<Segment>(blocks);
   part_ = arena.make<Segment>(blocks);
   std_ = arena.make<float>(resolved.state_std() ? 0 : resolved.action_dim());
-  final_value_ = arena.make<float>(resolved.num_envs());
-  final_cost_ = arena.make<float>(resolved.num_envs() * static_cast<size_t>(resolved.num_limited));
+  const size_t finals = resolved.num_envs() * static_cast<size_t>(resolved.num_critics());
+  final_value_ = arena.make<float>(finals);
+  final_cost_ = arena.make<float>(finals * static_cast<size_t>(resolved.num_limited));
   listed_ = arena.make<int32_t>(resolved.num_envs());
   epoch_cost_ = arena.make<double>(resolved.num_envs() * static_cast<size_t>(resolved.config.cost_dim));
   epoch_steps_ = arena.make<double>(resolved.num_envs());
@@ -187,7 +188,8 @@ void Collector::act_rows(const Workspace& workspace, const float* obs, const Poi
     std::memcpy(r.features + (at + i) * r.row_features,
                 nets_->features(workspace.actor) + i * nets_->feature_step(), r.row_features * sizeof(float));
   if (y != mean) split_head(y, rows, mean, r.log_std_of(at));
-  values(workspace, seen, rows, r.value + at, r.cost_value + at * static_cast<size_t>(r.num_costs));
+  values(workspace, seen, rows, r.value + at * r.critics,
+         r.cost_value + at * r.critics * static_cast<size_t>(r.num_costs));
   float own_std[kMaxActions];
   for (size_t i = 0; i < static_cast<size_t>(rows); ++i) {
     float* centered = r.action + (at + i) * dim;
@@ -309,7 +311,19 @@ void Collector::value_rows(const float* obs, int32_t rows, float* value, float* 
   workers_->sweep(rows, share(rows), [&](const Workspace& workspace, int32_t first, int32_t n) {
     const auto at = static_cast<size_t>(first);
     const float* x = normalized(obs + at * dim, n, workspace.obs);
-    values(workspace, x, n, value + at, cost_value + at * costs);
+    const size_t critics = rollout_.critics;
+    if (critics == 1) return values(workspace, x, n, value + at, cost_value + at * costs);
+    values(workspace, x, n, workspace.out, workspace.dout);
+    const auto mean = [&](const float* of, size_t width, float* to) {
+      for (size_t i = 0; i < static_cast<size_t>(n) * width; ++i) {
+        double sum = 0;
+        for (size_t v = 0; v < critics; ++v)
+          sum += static_cast<double>(of[i / width * critics * width + v * width + i % width]);
+        to[i] = static_cast<float>(sum / static_cast<double>(critics));
+      }
+    };
+    mean(workspace.out, 1, value + at);
+    if (nets_->count > Networks::kCost) mean(workspace.dout, costs, cost_value + at * costs);
   });
 }
 
@@ -340,8 +354,9 @@ void Collector::check(const Transition& t) const {
 
 // V of the final observations of paths that a time limit cut, a chunk at a time.
 void Collector::value_truncated(const Transition& t) {
-  const size_t costs = static_cast<size_t>(resolved_->num_limited), dim = resolved_->obs_dim();
-  std::memset(final_value_, 0, resolved_->num_envs() * sizeof(float));
+  const size_t critics = rollout_.critics, dim = resolved_->obs_dim();
+  const size_t costs = critics * static_cast<size_t>(resolved_->num_limited);
+  std::memset(final_value_, 0, resolved_->num_envs() * critics * sizeof(float));
   std::memset(final_cost_, 0, resolved_->num_envs() * costs * sizeof(float));
   if (!t.truncated || !t.final_obs) return;
   int32_t count = 0;
@@ -359,7 +374,8 @@ void Collector::value_truncated(const Transition& t) {
     if (memory_ && memory_.stacks()) memory_.stack_after(x, env, rows, workspace.obs);
     values(workspace, x, rows, workspace.out, workspace.dout);
     for (size_t i = 0; i < static_cast<size_t>(rows); ++i) {
-      final_value_[env[i]] = workspace.out[i];
+      std::memcpy(final_value_ + static_cast<size_t>(env[i]) * critics, workspace.out + i * critics,
+                  critics * sizeof(float));
       if (resolved_->values_costs)
         std::memcpy(final_cost_ + static_cast<size_t>(env[i]) * costs, workspace.dout + i * costs,
                     costs * sizeof(float));
@@ -462,7 +478,8 @@ void Collector::record_row(const Transition& t, int32_t env) {
   const float *cost = t.cost ? t.cost + first : nullptr, *learned = t.cost ? cost_ + first : nullptr;
   const int32_t steps = t.steps ? t.steps[e] : shared().action_repeat;
   const auto discount = static_cast<float>(elementary::pow(shared().discount, steps));
-  float* limited = r.cost + at * costs;
+  const size_t critics = r.critics;
+  float *limited = r.cost + at * critics * costs, *reward = r.reward + at * critics;
   if (memory_ && (flag(t.terminated, e, false) || flag(t.truncated, e, false) || resets(t, env)))
     memory_.clear(env);
   count_row(t, env, cost, steps);
@@ -470,16 +487,21 @@ void Collector::record_row(const Transition& t, int32_t env) {
   if (r.valid[at]) {
     if (normalizes()) usual_.count(e);
     const bool over = flag(t.terminated, e, false) || flag(t.truncated, e, false);
-    r.reward[at] = reward_[e] + discount * final_value_[e];
-    for (size_t i = 0; i < costs; ++i)
-      limited[i] = learned[resolved_->column[i]] + discount * final_cost_[e * costs + i];
+    for (size_t v = 0; v < critics; ++v) {
+      reward[v] = reward_[e] + discount * final_value_[e * critics + v];
+      for (size_t i = 0, k = v * costs; i < costs; ++i, ++k)
+        limited[k] = learned[resolved_->column[i]] + discount * final_cost_[e * critics * costs + k];
+    }
     r.discount[at] = over ? 0 : discount;
   }
-  end_row(t, env, discount, limited);
-  for (size_t i = 0; !resolved_->values_costs && i < costs; ++i) r.reward[at] -= charge_[i] * limited[i];
+  float fall[kMaxCosts] = {};
+  end_row(t, env, discount, fall);
+  for (size_t k = 0; k < critics * costs; ++k) limited[k] += fall[k % costs];
+  for (size_t i = 0; !resolved_->values_costs && i < costs; ++i) reward[0] -= charge_[i] * limited[i];
   if (r.valid[at]) return;
-  r.reward[at] = r.discount[at] = 0;
-  std::fill_n(limited, costs, 0.0f);
+  std::fill_n(reward, critics, 0.0f);
+  r.discount[at] = 0;
+  std::fill_n(limited, critics * costs, 0.0f);
   noise_.end_episode(env);
 }
 
@@ -574,24 +596,29 @@ Batch Collector::minibatch(int32_t i, int32_t parts) const {
 
 double Collector::mean_value(bool of_cost) const {
   const Rollout& r = rollout_;
-  return of_cost ? masked_mean(r.rows(), r.cost_value, r.num_costs, workers_->ranks())
-                 : masked_mean(r.rows(), r.value, 1, workers_->ranks());
+  const auto critics = static_cast<int32_t>(r.critics);
+  const int32_t step = of_cost ? r.num_costs : 1;
+  double sum = 0;
+  for (int32_t v = 0; v < critics; ++v)
+    sum += masked_mean(r.rows(), (of_cost ? r.cost_value : r.value) + v * step, critics * step,
+                       workers_->ranks());
+  return sum / critics;
 }
 
 void Collector::begin_estimate(const float* last_obs) {
   const Rollout& r = rollout_;
-  workers_->sweep(r.num_envs, resolved_->chunk_rows,
-                  [&](const Workspace& workspace, int32_t first, int32_t rows) {
-                    const auto at = static_cast<size_t>(first);
-                    const float* x = normalized(last_obs + at * r.obs_dim, rows, workspace.obs);
-                    values(workspace, stacked(workspace, x, first, rows, false), rows, r.last_value + at,
-                           r.last_cost_value + at * static_cast<size_t>(r.num_costs));
-                  });
-  column_ = -1;
+  workers_->sweep(
+      r.num_envs, resolved_->chunk_rows, [&](const Workspace& workspace, int32_t first, int32_t rows) {
+        const auto at = static_cast<size_t>(first);
+        const float* x = normalized(last_obs + at * r.obs_dim, rows, workspace.obs);
+        values(workspace, stacked(workspace, x, first, rows, false), rows, r.last_value + at * r.critics,
+               r.last_cost_value + at * r.critics * static_cast<size_t>(r.num_costs));
+      });
+  column_ = -resolved_->num_critics();
 }
 
 bool Collector::estimate_on() {
-  if (column_ < (resolved_->values_costs ? rollout_.num_costs : 0)) {
+  if (column_ < (resolved_->values_costs ? resolved_->num_critics() * rollout_.num_costs : 0)) {
     const SharedOptions& o = shared();
     estimate_advantage(rollout_, column_++,
                        {o.lambda, o.cost_lambda, o.standardize_reward_adv, o.standardize_cost_adv},

@@ -75,13 +75,15 @@ Rollout carve_rollout(Arena& arena, const ResolvedAgentConfig& resolved) {
   r.num_groups = resolved.num_groups();
   r.group = r.num_groups ? resolved.groups.data() : nullptr;
   r.log_prob = arena.make<float>(n * r.parts());
-  for (float** column : {&r.reward, &r.value, &r.advantage, &r.target, &r.discount, &r.gain, &r.linear})
-    *column = arena.make<float>(n);
+  r.critics = static_cast<size_t>(resolved.num_critics());
+  for (float** column : {&r.reward, &r.value, &r.advantage, &r.target, &r.gain, &r.linear})
+    *column = arena.make<float>(n * r.critics);
+  r.discount = arena.make<float>(n);
   for (float** column : {&r.cost, &r.cost_value, &r.cost_advantage, &r.cost_target})
-    *column = arena.make<float>(n * k);
+    *column = arena.make<float>(n * r.critics * k);
   r.valid = arena.make<uint8_t>(n);
-  r.last_value = arena.make<float>(resolved.num_envs());
-  r.last_cost_value = arena.make<float>(resolved.num_envs() * k);
+  r.last_value = arena.make<float>(resolved.num_envs() * r.critics);
+  r.last_cost_value = arena.make<float>(resolved.num_envs() * r.critics * k);
   r.std_step = resolved.state_std() ? r.action_dim : 0;
   r.log_std = arena.make<float>(resolved.state_std() ? n * r.action_dim : r.action_dim);
   r.order = arena.make<int32_t>(n);
@@ -90,20 +92,23 @@ Rollout carve_rollout(Arena& arena, const ResolvedAgentConfig& resolved) {
 }
 
 void estimate_advantage(const Rollout& r, int32_t k, const AdvantageOptions& options, Ranks& ranks) {
+  const auto critics = static_cast<int32_t>(r.critics);
   if (k < 0) {
-    gae({r.reward, r.value, r.last_value, r.advantage, r.target, 1}, r.discount, r.valid, r.horizon,
-        r.num_envs, options.lambda);
-    if (options.standardize_reward) standardize(r.rows(), r.advantage, 1, true, ranks);
+    const int32_t v = k + critics;
+    gae({r.reward + v, r.value + v, r.last_value + v, r.advantage + v, r.target + v, critics}, r.discount,
+        r.valid, r.horizon, r.num_envs, options.lambda);
+    if (options.standardize_reward) standardize(r.rows(), r.advantage + v, critics, true, ranks);
     return;
   }
-  gae({r.cost + k, r.cost_value + k, r.last_cost_value + k, r.cost_advantage + k, r.cost_target + k,
-       r.num_costs},
+  const int32_t width = critics * r.num_costs;
+  gae({r.cost + k, r.cost_value + k, r.last_cost_value + k, r.cost_advantage + k, r.cost_target + k, width},
       r.discount, r.valid, r.horizon, r.num_envs, options.cost_lambda);
-  standardize(r.rows(), r.cost_advantage + k, r.num_costs, options.standardize_cost, ranks);
+  standardize(r.rows(), r.cost_advantage + k, width, options.standardize_cost, ranks);
 }
 
 void estimate_advantages(const Rollout& r, const AdvantageOptions& options, Ranks& ranks) {
-  for (int32_t k = -1; k < r.num_costs; ++k) estimate_advantage(r, k, options, ranks);
+  const auto critics = static_cast<int32_t>(r.critics);
+  for (int32_t k = -critics; k < critics * r.num_costs; ++k) estimate_advantage(r, k, options, ranks);
 }
 
 namespace {
@@ -174,7 +179,7 @@ void combine_advantages(const Rollout& r, const double* weights, Mix mix, bool s
   double sum = 0;
   for (size_t k = 0; k < costs; ++k) sum += weights[k];
   const double total = mix == Mix::kSum ? 1 + sum : 1, share = mix == Mix::kDifference ? 1 - sum : 1;
-  for (size_t i = 0; i < static_cast<size_t>(r.samples()); ++i) {
+  for (size_t i = 0; i < r.valued_rows(); ++i) {
     double cost = 0;
     for (size_t k = 0; k < costs; ++k)
       cost += weights[k] * static_cast<double>(r.cost_advantage[i * costs + k]);

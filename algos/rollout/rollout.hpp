@@ -12,6 +12,7 @@ struct Rollout {
   int32_t filled = 0;                 // decisions recorded
   const ActorGroup* group = nullptr;  // [num_groups] of the actor; none: one network gives all of an action
   int32_t num_groups = 0;
+  size_t critics = 1;  // of each kind
 
   // [samples] rows of:
   float* obs = nullptr;                     // [obs_dim] as the networks saw it, without its history
@@ -23,17 +24,19 @@ struct Rollout {
   float* action = nullptr;                  // [action_dim] less the offset of the correlated noise
   float* mean = nullptr;                    // [action_dim] of the policy that acted
   float* log_prob = nullptr;                // [parts()]
+  // [critics]: more than one where each group of the actor has critics of its own
   float *reward = nullptr, *value = nullptr, *advantage = nullptr, *target = nullptr;
-  // [num_costs]
+  // [critics][num_costs]
   float *cost = nullptr, *cost_value = nullptr, *cost_advantage = nullptr, *cost_target = nullptr;
   float* discount = nullptr;  // 0 where a path ended
   uint8_t* valid = nullptr;
   float* log_std = nullptr;  // [action_dim] of the innovation, of the policy that acted; std_step apart
   size_t std_step = 0;       // 0: one for all rows
-  // What the actor climbs: clipped, and linear in the ratio (0 unless the algorithm splits its loss).
+  // [critics]: what the actor climbs: clipped, and linear in the ratio (0 unless the algorithm splits its loss).
   float *gain = nullptr, *linear = nullptr;
-  float *last_value = nullptr, *last_cost_value = nullptr;  // [num_envs], [num_envs][num_costs]
-  int32_t* order = nullptr;  // [samples] valid rows, block after block, shuffled
+  float *last_value = nullptr,
+        *last_cost_value = nullptr;  // [num_envs][critics], [num_envs][critics][num_costs]
+  int32_t* order = nullptr;          // [samples] valid rows, block after block, shuffled
 
   // What an agent with a memory keeps. age [samples]: decisions since the memory was cleared, within this horizon, no
   // more than count: kWholeMemory where it was not.
@@ -62,6 +65,9 @@ struct Rollout {
   PointRows clouds(const int32_t* order, int32_t stride = 1) const {
     return {points, nullptr, point_class, point_color, features, nullptr, order, stride};
   }
+  // Of sample `at` the row of what group g climbs, as each critic has one.
+  size_t valued(size_t at, size_t g) const { return critics > 1 ? at * critics + g : at; }
+  size_t valued_rows() const { return static_cast<size_t>(samples()) * critics; }
   size_t row(int32_t t) const { return static_cast<size_t>(t) * static_cast<size_t>(num_envs); }
   int32_t samples() const { return horizon * num_envs; }
   BlockRows rows() const { return {valid, horizon, num_envs}; }
@@ -95,7 +101,8 @@ void expect_actions(const Rollout& r, const int32_t* order, int32_t n);
 // or A_r - sum l_i A_ci.
 enum class Mix : int32_t { kSum, kDifference, kPlain };
 
-// Fills advantages and targets of the reward (column -1) or a limited cost, and scales the advantages by those
+// Fills advantages and targets of the reward (column -critics to -1, one for each critic) or of a limited cost (0 to
+// critics num_costs - 1), and scales the advantages by those
 // of all ranks.
 void estimate_advantage(const Rollout& r, int32_t column, const AdvantageOptions& options, Ranks& ranks);
 void estimate_advantages(const Rollout& r, const AdvantageOptions& options, Ranks& ranks);

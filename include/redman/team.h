@@ -9,8 +9,8 @@ extern "C" {
 
 /* A team is an agent whose action is shared out between groups, such as the two hands: each group
  * has an actor of its own, which reads its own fields of the observation and gives its own entries
- * of the action. Algorithms mappo, mappo_lag, happo and macpo learn teams; their option `groups`
- * names a set that the task has, or lists groups as NAME:FIELDS:FIRST-LAST;...
+ * of the action. Algorithms mappo, mappo_lag, happo, macpo, ippo and ippo_lag learn teams; their
+ * option `groups` names a set that the task has, or lists groups as NAME:FIELDS:FIRST-LAST;...
  *
  *   c.algo = "mappo_lag";
  *   c.settings = "groups=hands";      // of a task with two hands: right, left

@@ -72,11 +72,11 @@ TEST(Networks, StateDeviationsAreOutputsWithinTheirBounds) {
   ASSERT_EQ(t.rows, 6);
   t.data[4] = -9, t.data[5] = 9;
   Arena measure;
-  carve_mlp_scratch(measure, m.resolved.actor, 1);
+  carve_actor_scratch(measure, m.resolved, 1);
   Arena arena(host(), measure.used());
   const float x[] = {3, -1, 2, 0.5f, 1}, share = std::log(0.8f);
   float y[6], dy[] = {1, 1, 1, 1, 1, 1};
-  m.nets.forward(Networks::kActor, x, 1, carve_mlp_scratch(arena, m.resolved.actor, 1), y);
+  m.nets.forward(Networks::kActor, x, 1, carve_actor_scratch(arena, m.resolved, 1), y);
   EXPECT_NEAR(y[3], std::log(0.4f) + share, 1e-6);
   EXPECT_NEAR(y[4], std::log(0.1f) + share, 1e-6);
   EXPECT_NEAR(y[5], std::log(2.0f) + share, 1e-6);
@@ -112,9 +112,9 @@ TEST(Networks, TheFirstPolicyIsTheInitialMean) {
   s.with("init_std", "0.4").with("last_layer_scale", "0");
   Made m(s);
   Arena measure;
-  carve_mlp_scratch(measure, m.resolved.actor, 1);
+  carve_actor_scratch(measure, m.resolved, 1);
   Arena arena(host(), measure.used());
-  const MlpScratch scratch = carve_mlp_scratch(arena, m.resolved.actor, 1);
+  const ActorScratch scratch = carve_actor_scratch(arena, m.resolved, 1);
   const float x[] = {3, -1, 2, 0.5f, 1};
   float y[3];
   m.nets.forward(Networks::kActor, x, 1, scratch, y);

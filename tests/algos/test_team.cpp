@@ -139,8 +139,9 @@ TEST(Groups, ATaskShipsSetsAndTheFirstIsTheDefault) {
 
 // One group is the algorithm for one agent: the same networks, policies and epochs, to the byte.
 TEST(Team, OneGroupIsTheAlgorithmForOneAgent) {
-  const std::pair<const char*, const char*> pairs[] = {
-      {"mappo", "ppo"}, {"mappo_lag", "ppo_lag"}, {"happo", "ppo"}, {"macpo", "cpo"}};
+  const std::pair<const char*, const char*> pairs[] = {{"mappo", "ppo"}, {"mappo_lag", "ppo_lag"},
+                                                       {"happo", "ppo"}, {"macpo", "cpo"},
+                                                       {"ippo", "ppo"},  {"ippo_lag", "ppo_lag"}};
   for (const auto& [of_team, alone] : pairs) {
     SCOPED_TRACE(of_team);
     const OptionInput defaults[] = {
@@ -291,12 +292,106 @@ TEST_P(TeamAlgo, NothingIsAllocatedAfterTheFirstEpoch) {
   EXPECT_EQ(heap_count(), before);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, TeamAlgo,
-                         testing::Combine(testing::Values("mappo", "mappo_lag", "happo", "macpo"),
-                                          testing::Values("free", "state")),
-                         [](const auto& i) {
-                           return std::string(std::get<0>(i.param)) + "_" + std::get<1>(i.param);
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    All, TeamAlgo,
+    testing::Combine(testing::Values("mappo", "mappo_lag", "happo", "macpo", "ippo", "ippo_lag"),
+                     testing::Values("free", "state")),
+    [](const auto& i) { return std::string(std::get<0>(i.param)) + "_" + std::get<1>(i.param); });
+
+// A group of IPPO learns as an agent of its own would that sees the group's fields alone, acts as the group acted, and
+// gets the team's rewards and costs: actor and critics, over ends, truncations with final rows, and rows left out.
+TEST(Team, IndependentGroupsLearnAsAgentsOfTheirOwn) {
+  for (const auto& [of_team, alone] : {std::pair{"ippo", "ppo"}, std::pair{"ippo_lag", "ppo_lag"}}) {
+    SCOPED_TRACE(of_team);
+    AgentSetup s = team(of_team, kPair);
+    s.with("terminal_cost", "true");
+    const AgentPtr whole = s.make();
+    const char* const names[] = {"right", "left"};
+    const char* const fields[] = {"right.*,ball", "!right.*"};
+    const int32_t first[] = {0, 2}, count[] = {2, 3};
+    AgentPtr own[2];
+    for (size_t g = 0; g < 2; ++g) {
+      AgentSetup t = team(alone, nullptr);
+      t.with("terminal_cost", "true").with("actor_obs", fields[g]).with("critic_obs", fields[g]);
+      t.config.action_dim = count[g];
+      own[g] = t.make();
+      TensorInfo mine, theirs;
+      int32_t copied = 0;
+      for (int32_t i = 0; own[g]->tensor(i, &mine); ++i) {
+        const std::string name = mine.name;
+        if (name == "actor.log_std") continue;
+        const size_t dot = name.find('.');
+        const std::string wanted = name.substr(0, dot + 1) + names[g] + name.substr(dot);
+        for (int32_t k = 0; whole->tensor(k, &theirs); ++k)
+          if (wanted == theirs.name) {
+            ASSERT_EQ(mine.rows * mine.cols, theirs.rows * theirs.cols) << wanted;
+            std::copy_n(theirs.data, mine.rows * mine.cols, mine.data), ++copied;
+          }
+      }
+      ASSERT_EQ(copied, std::strcmp(alone, "ppo") == 0 ? 12 : 18);
+    }
+    NoiseWorld world(s.config);
+    std::vector<float> action(24 * kActions), part;
+    for (int epoch = 0; epoch < 3; ++epoch) {
+      while (whole->missing() > 0) {
+        const std::vector<float> obs(world.obs(), world.obs() + 24 * kObs);
+        whole->act(obs.data(), true, action.data());
+        world.draw();
+        whole->record(world.transition());
+        for (size_t g = 0; g < 2; ++g) {
+          part.clear();
+          for (size_t i = 0; i < 24; ++i)
+            part.insert(part.end(), action.begin() + static_cast<long>(i * kActions) + first[g],
+                        action.begin() + static_cast<long>(i * kActions) + first[g] + count[g]);
+          own[g]->put(obs.data(), part.data(), world.transition());
+        }
+      }
+      Epoch e, f;
+      whole->update(world.obs(), &e);
+      for (const AgentPtr& a : own) {
+        a->update(world.obs(), &f);
+        EXPECT_EQ(e.multiplier[0], f.multiplier[0]);
+      }
+    }
+    float moved = 0;
+    for (size_t g = 0; g < 2; ++g) {
+      TensorInfo mine, theirs;
+      for (int32_t i = 0; own[g]->tensor(i, &mine); ++i) {
+        const std::string name = mine.name;
+        const size_t dot = name.find('.');
+        const bool std = name == "actor.log_std";
+        const std::string wanted = std ? name : name.substr(0, dot + 1) + names[g] + name.substr(dot);
+        for (int32_t k = 0; whole->tensor(k, &theirs); ++k) {
+          if (wanted != theirs.name) continue;
+          for (int32_t j = 0; j < mine.rows * mine.cols; ++j) {
+            const float at = theirs.data[j + (std ? first[g] : 0)];
+            ASSERT_NEAR(mine.data[j], at, 2e-5f) << wanted << " " << j;
+            moved = std::max(moved, std::abs(at));
+          }
+        }
+      }
+    }
+    EXPECT_GT(moved, 0.1f);
+  }
+}
+
+// The critics of a group see its fields alone.
+TEST(Team, CriticsOfAGroupDoNotSeeTheOthersFields) {
+  AgentSetup s = team("ippo_lag", kPair, 8);
+  const AgentPtr a = s.make();
+  const auto columns = [&](const char* critic) {
+    TensorInfo t;
+    for (int32_t i = 0; a->tensor(i, &t); ++i)
+      if (std::string(t.name) == std::string(critic) + ".0.weight") return t.cols;
+    return 0;
+  };
+  for (const char* kind : {"reward_critic.", "cost_critic."}) {
+    EXPECT_EQ(columns((std::string(kind) + "right").c_str()), 7) << kind;
+    EXPECT_EQ(columns((std::string(kind) + "left").c_str()), 6) << kind;
+  }
+  s.with("critic_obs", "left.*");
+  EXPECT_NE(refused([&] { s.make(); }).find("critic_obs leaves right no entry"), std::string::npos);
+}
 
 // Each group's ratio is clipped by itself, and its parameters' gradient is that of its own factor: against finite
 // differences of the sum over groups of clip(rho_g) A, written here in its own way.

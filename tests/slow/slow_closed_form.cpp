@@ -1,4 +1,4 @@
-// Each of the fourteen algorithms on three worlds with a known optimum, five seeds: return within 2 % of the
+// Each algorithm for one agent on three worlds with a known optimum, five seeds: return within 2 % of the
 // constrained optimum and cost within 2 % of its limit or below in every seed (PPO and TRPO: the optimum
 // without a limit). CLOSED_FORM_ALGO=name runs one alone.
 #include <algorithm>

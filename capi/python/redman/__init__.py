@@ -18,7 +18,7 @@ WHAT IS THERE. help(redman.Pool) and so on tell more.
     worlds          Pool, Sensors, Guard; spec, memory; Map, sample_furthest
     learners        Agent, Epoch, CostLimits, Options; Recording, CloneReport; Ranks
     policies        Policy, Actor, Origin, HoldWarning; Planner, PlanInfo; Shield, ShieldRow, project
-    teams           groups, Group; Policy.groups, Policy.group; algorithms mappo, mappo_lag, happo, macpo
+    teams           groups, Group; Policy.groups, Policy.group; algorithms mappo, mappo_lag, happo, macpo, ippo, ippo_lag
     runs            train, sweep, Run; callbacks, Callback, Training; evaluate, Evaluation, Player; compare,
                     Comparison; curve, Curve, Curves; stats;
                     Episode; view, Window
