@@ -81,7 +81,7 @@ if [ "$mode" != quick ] && [ "$mode" != release ]; then
     want "the tool redman and its tests" $tool_packages
     want "robots, objects and tasks out of files, and their tests" $import_packages
     want "test format" clang-format-14
-    want "tests test_python_*" python3 python3-numpy
+    want "tests test_python_*" python3 python3-numpy python3-h5py
     want "what tests test_python_* ask of types" mypy
     want "the manual pages and test manual" help2man
     want "the site and its test" python3-sphinx python3-myst-parser furo

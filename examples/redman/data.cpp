@@ -9,6 +9,7 @@
 #include "common/setup.hpp"
 #include "common/text.hpp"
 #include "data/make.hpp"
+#include "data/mcap.hpp"
 #include "data/published.hpp"
 #include "data/set.hpp"
 #include "data/summary.hpp"
@@ -88,6 +89,64 @@ Report run_data_info(const std::string& path) {
   return {json, summary_text(json)};
 }
 
+struct DataConvertFlags {
+  std::string from, to;
+  bool keep_unfinished = false;
+};
+
+// The endings of files that the tool reads and writes; Usage for others.
+enum class DataFile { kArrays, kMcap };
+DataFile data_file(const std::string& path, const char* what) {
+  if (ends_with(path, ".npz")) return DataFile::kArrays;
+  if (ends_with(path, ".mcap")) return DataFile::kMcap;
+  for (const char* end : {".hdf5", ".h5", ".minari", ".lerobot"})
+    if (ends_with(path, end))
+      throw Usage(std::string(what) + ' ' + printable(path) +
+                  ": such files are read and written in Python: python3 -m redman data convert FROM TO");
+  throw Usage(
+      std::string(what) + ' ' + printable(path) +
+      ": its name does not end in .npz or .mcap, nor in .hdf5 or .minari for python3 -m redman data convert");
+}
+
+Report run_data_convert(const DataConvertFlags& flags) {
+  const DataFile from = data_file(flags.from, "FROM"), to = data_file(flags.to, "TO");
+  DataSet set = from == DataFile::kMcap ? read_mcap(flags.from) : read_set(flags.from);
+  Json left_out = Json::array();
+  std::vector<DataEpisode> kept;
+  for (size_t i = 0; i < set.episodes.size(); ++i) {
+    if (!flags.keep_unfinished && !set.episodes[i].ended())
+      left_out.push_back(i);
+    else
+      kept.push_back(std::move(set.episodes[i]));
+  }
+  set.episodes = std::move(kept);
+  to == DataFile::kMcap ? write_mcap(set, flags.to) : write_set(set, flags.to);
+  std::string text =
+      format("wrote %s: %llu rows in %zu episodes, hash %s\n", flags.to.c_str(),
+             static_cast<unsigned long long>(set.rows()), set.episodes.size(), hash_text(set).c_str());
+  if (!left_out.empty())
+    text += format(
+        "left out, because they have no end: %zu episodes; the first is %llu. --keep-unfinished takes them\n",
+        left_out.size(), left_out[0].get<unsigned long long>());
+  return {{{"file", flags.to},
+           {"rows", set.rows()},
+           {"episodes", set.episodes.size()},
+           {"left_out", left_out},
+           {"hash", hash_text(set)}},
+          text};
+}
+
+void add_data_convert(CLI::App& data, Run& run) {
+  auto flags = std::make_shared<DataConvertFlags>();
+  CLI::App* command =
+      data.add_subcommand("convert", "Convert a data set between arrays (.npz) and MCAP (.mcap)");
+  command->footer("redman data convert set.npz set.mcap");
+  command->add_option("from", flags->from, "file to read: .npz or .mcap")->required();
+  command->add_option("to", flags->to, "file to write: .npz or .mcap")->required();
+  command->add_flag("--keep-unfinished", flags->keep_unfinished, "also take episodes without an end");
+  command->callback([&run, flags] { run = [flags] { return run_data_convert(*flags); }; });
+}
+
 void add_data_make(CLI::App& data, Run& run) {
   auto flags = std::make_shared<DataMakeFlags>();
   flags->make.pool.task = "";
@@ -133,6 +192,7 @@ void add_data(CLI::App& app, Run& run) {
   command->require_subcommand(1);
   add_data_make(*command, run);
   add_data_info(*command, run);
+  add_data_convert(*command, run);
 }
 
 }  // namespace tool

@@ -18,7 +18,7 @@ import redman
 from redman import _abi, _import_abi
 
 PACKAGE = Path(redman.__file__).parent
-ADAPTERS = ("gym", "omnisafe", "pettingzoo", "safety", "sb3", "stats")
+ADAPTERS = ("data", "gym", "omnisafe", "pettingzoo", "safety", "sb3", "stats")
 FUNCTIONS = {*_abi.FUNCTIONS, *_import_abi.FUNCTIONS}
 
 MANY = "Worlds has it for many worlds at once"

@@ -25,6 +25,7 @@ WHAT IS THERE. help(redman.Pool) and so on tell more.
     your own        Rows, Costs: rewards and costs of train and evaluate; Task, RowTask, Verdict, Worlds, SceneBuilder; Robot.create,
                     Object.create, a .task file; check_task, c_function
     environments    redman.gym, redman.sb3, redman.safety, redman.omnisafe, redman.pettingzoo; make, make_vec
+    data sets       redman.data: load, save and convert sets of episodes (.npz, .hdf5, .minari, .mcap); data.score
     records         Algo, Build, Camera, Cost, Field, Joint, MapInfo, Note, Object, Option, PlannerSpec, PolicyInfo, PoolStats,
                     Poses, PretrainReport, RayHit, RecordingInfo, Robot, Shape, ShieldStats, Spec, TaskInfo
     numbers         Autoreset, BaselineKind, Feature, JointKind, NoteKind, OptionKind, OptionLevel, ResultCode, RobotKind,
@@ -115,6 +116,6 @@ if not TYPE_CHECKING:  # a type checker would take it for every name
         """Imports an adapter when it is first used; for names of other libraries, the error says what to write instead."""
         import importlib
         from ._names import module_hint
-        if name in ("gym", "omnisafe", "pettingzoo", "safety", "sb3"):
+        if name in ("data", "gym", "omnisafe", "pettingzoo", "safety", "sb3"):
             return importlib.import_module(f".{name}", __name__)
         raise AttributeError(module_hint(name, __all__))

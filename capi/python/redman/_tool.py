@@ -36,7 +36,16 @@ def _is_tool(path: Path) -> bool:
 
 
 def main() -> None:
-    """Becomes the tool, with the arguments of this command. REDMAN_TOOL, which may name this very command, is not read."""
+    """Becomes the tool, with the arguments of this command. REDMAN_TOOL, which may name this very command, is not read.
+    `data convert` of HDF5 files is done here."""
+    words = sys.argv[1:]
+    if words[:2] == ["data", "convert"] and any(w.lower().endswith((".hdf5", ".h5", ".minari")) for w in words):
+        from . import data
+        from ._error import Error
+        try:
+            sys.exit(data.main(words[2:]))
+        except (Error, OSError) as e:
+            sys.exit(f"redman: {e}")
     tool = _found()
     if tool is None:
         sys.exit("redman: there is no command-line tool in this package, beside its library or on PATH")
