@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/lasting.hpp"
+#include "env/dynamics_shown.hpp"
 #include "env/options/budget.hpp"
 #include "env/options/disturb.hpp"
 #include "env/options/repeat.hpp"
@@ -31,13 +32,14 @@ struct OptionTableView {
   int32_t count;
 };
 // A task's own, and those that every task has.
-std::array<OptionTableView, 5> tables_of(const TaskInfo& info) {
-  std::array<OptionTableView, 5> t;
+std::array<OptionTableView, 6> tables_of(const TaskInfo& info) {
+  std::array<OptionTableView, 6> t;
   t[0].rows = task_options(info, &t[0].count);
   t[1].rows = sense_options(&t[1].count);
   t[2].rows = repeat_options(&t[2].count);
   t[3].rows = disturb_options(&t[3].count);
   t[4].rows = budget_options(&t[4].count);
+  t[5].rows = dynamics_options(&t[5].count);
   return t;
 }
 

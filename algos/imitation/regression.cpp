@@ -1,5 +1,6 @@
 #include "algos/imitation/regression.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 #include "base/elementary.hpp"
@@ -14,14 +15,43 @@ void Regression::open(const ResolvedAgentConfig& resolved, const Collector& coll
   workers_ = &workers;
 }
 
+const float* Regression::gather(const Workspace& workspace, const DemoRows& demo, const int32_t* order,
+                                int32_t rows) const {
+  const size_t dim = resolved_->obs_dim(), width = resolved_->seen_dim();
+  const auto row_of = [&](int32_t row) { return demo.obs + static_cast<size_t>(row) * dim; };
+  for (size_t i = 0; i < static_cast<size_t>(rows); ++i)
+    std::memcpy(workspace.obs + i * dim, row_of(order[i]), dim * sizeof(float));
+  const float* x = collector_->normalized(workspace.obs, rows, workspace.obs);
+  if (resolved_->history == 1) return x;
+  const Normalizer& n = collector_->normalizer();
+  const Rollout& r = collector_->rollout();
+  const auto entries = static_cast<size_t>(r.width);
+  for (auto i = static_cast<size_t>(rows); i-- > 0;) {  // from the last row on: they begin in the same place
+    float* const to = workspace.obs + i * width;
+    std::memmove(to, workspace.obs + i * dim, dim * sizeof(float));
+    float* past = to + dim;
+    int32_t row = order[i];
+    for (int32_t k = 0; k < r.depth; ++k, past += entries) {
+      if (row >= 0) row = demo.before[row];
+      for (size_t j = 0; j < entries; ++j) {
+        const size_t column = r.columns ? static_cast<size_t>(r.columns[j]) : j;
+        if (row < 0)
+          past[j] = 0;
+        else if (collector_->normalizes())
+          past[j] = std::clamp((row_of(row)[column] - n.shift[column]) * n.scale[column], -n.clip, n.clip);
+        else
+          past[j] = row_of(row)[column];
+      }
+    }
+  }
+  return workspace.obs;
+}
+
 double Regression::chunk(const Workspace& workspace, const DemoRows& demo, const int32_t* order, int32_t rows,
                          bool precise, float scale, float* grad) const {
-  const size_t width = resolved_->obs_dim(), dim = resolved_->action_dim();
+  const size_t dim = resolved_->action_dim();
   const auto out = static_cast<size_t>(nets_->shape[Networks::kActor].out);
-  for (size_t i = 0; i < static_cast<size_t>(rows); ++i)
-    std::memcpy(workspace.obs + i * width, demo.obs + static_cast<size_t>(order[i]) * width,
-                width * sizeof(float));
-  const float* x = collector_->normalized(workspace.obs, rows, workspace.obs);
+  const float* x = gather(workspace, demo, order, rows);
   PointRows clouds = demo.clouds;
   clouds.order = order;
   nets_->forward_actor(x, clouds, rows, workspace.actor, workspace.out);

@@ -19,6 +19,8 @@ struct DemoRows {
   const float* label = nullptr;      // [rows][action_dim]
   const int64_t* episode = nullptr;  // [rows] number, null: one
   PointRows clouds = {};             // [rows], for an agent with eyes
+  const int32_t* before =
+      nullptr;  // [rows] row of the decision before in the same episode, -1: none; of a history
 };
 
 // L of listed rows on its way.
@@ -51,6 +53,10 @@ class Regression {
   void features(const DemoRows& demo, float* out) const;
 
  private:
+  // Listed rows as the actor sees them, normalised, in the workspace; with option history those before them too, which
+  // are normalised as the row itself is.
+  const float* gather(const Workspace& workspace, const DemoRows& demo, const int32_t* order,
+                      int32_t rows) const;
   // Twice the sum of L's terms; grad null: no gradient.
   double chunk(const Workspace& workspace, const DemoRows& demo, const int32_t* order, int32_t rows,
                bool precise, float scale, float* grad) const;

@@ -14,13 +14,11 @@ constexpr double kMostLeft = 1e30;  // of what any costs and discounts leave
 }  // namespace
 
 BudgetTask::BudgetTask(const Task& inner, const Budget& budget)
-    : inner_(inner),
+    : TaskAround(inner),
       budget_(budget),
-      offset_((inner.state_bytes() + sizeof(double) - 1) / sizeof(double) * sizeof(double)),
-      inner_dim_(obs_dim(inner)) {
-  for (const FieldSpec& f : inner.fields()) fields_.push_back(f);
-  add_field(fields_, "budget", "left", "1", 1);
-  if (budget_.ranged()) add_field(fields_, "budget", "limit", "1", 1, 0);
+      offset_((inner.state_bytes() + sizeof(double) - 1) / sizeof(double) * sizeof(double)) {
+  add_field(own_fields(), "budget", "left", "1", 1);
+  if (budget_.ranged()) add_field(own_fields(), "budget", "limit", "1", 1, 0);
   const double g = budget_.discount, steps = inner.max_steps();
   if (g < 1) scale_ = (1 - elementary::pow(g, inner.max_steps())) / ((1 - g) * steps);
 }
@@ -36,7 +34,7 @@ void BudgetTask::write(void* state, const State& s) const {
 }
 
 void BudgetTask::check_state(const void* state) const {
-  inner_.check_state(state);
+  inner().check_state(state);
   const State s = read(state);
   const double low = draws_limit() ? budget_.range.low : budget_.limit;
   const double high = draws_limit() ? budget_.range.high : budget_.limit;
@@ -75,7 +73,7 @@ void BudgetTask::spend(void* state, Verdict* verdict) const {
   if (budget_.kind == BudgetKind::kEnd) verdict->terminated = true;
 }
 
-void BudgetTask::show(const void* state, float* out) const {
+void BudgetTask::show(const World&, const void* state, float* out) const {
   const State s = read(state);
   const double whole = scale_ * s.limit;
   out[0] = static_cast<float>(whole > 0 ? s.left / whole : s.left < 0 ? -1 : 0);
@@ -88,42 +86,26 @@ double BudgetTask::limit(const void* state) const {
 }
 
 void BudgetTask::reset(World& world, void* state, Stream& stream) const {
-  inner_.reset(world, state, stream);
+  inner().reset(world, state, stream);
   begin(state, stream);
 }
 
 Verdict BudgetTask::judge(World& world, void* state, int32_t step) const {
-  Verdict v = inner_.judge(world, state, step);
+  Verdict v = inner().judge(world, state, step);
   spend(state, &v);
   return v;
 }
 
-void BudgetTask::observe(const World& world, const void* state, float* obs) const {
-  inner_.observe(world, state, obs);
-  show(state, obs + inner_dim_);
-}
-
 void BudgetTask::reset_rows(const TaskRows& rows) const {
-  inner_.reset_rows(rows);
+  inner().reset_rows(rows);
   for (int32_t i = 0; i < rows.count; ++i)
     if (rows.codes[i] == Code::kOk) begin(rows.states[i], *rows.streams[i]);
 }
 
 void BudgetTask::judge_rows(const TaskRows& rows) const {
-  inner_.judge_rows(rows);
+  inner().judge_rows(rows);
   for (int32_t i = 0; i < rows.count; ++i)
     if (rows.codes[i] == Code::kOk) spend(rows.states[i], &rows.verdicts[i]);
-}
-
-// The inner task's rows stand close together at first; the last one moves first.
-void BudgetTask::observe_rows(const TaskRows& rows) const {
-  inner_.observe_rows(rows);
-  const auto inner = static_cast<size_t>(inner_dim_), width = static_cast<size_t>(field_total(fields_));
-  for (auto i = static_cast<size_t>(rows.count); i-- > 0;) {
-    float* const row = rows.obs + i * width;
-    std::memmove(row, rows.obs + i * inner, inner * sizeof *row);
-    show(rows.states[i], row + inner);
-  }
 }
 
 }  // namespace rdm

@@ -125,6 +125,10 @@ void WorldDisturbance::show(const Disturbance& plan, int32_t step, float* row) {
     const bool stays = step > 0 && stream_.uniform() < static_cast<double>(*n.dropout);
     std::memcpy(stays ? x : n.shown, stays ? n.shown : x, sz(f.count) * sizeof *x);
   }
+  if (plan.delay_entry < 0) return;
+  const OptionRange& range = plan.action_delay;
+  const auto delay = static_cast<double>(*at(1));
+  row[plan.delay_entry] = static_cast<float>(2 * (delay - range.low) / (range.high - range.low) - 1);
 }
 
 void WorldDisturbance::delay_action(const Disturbance& plan, int32_t step, int32_t action_dim,

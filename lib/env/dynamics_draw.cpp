@@ -110,4 +110,93 @@ void DynamicsDraws::apply(World& world, Stream& stream) const {
   world.set_dynamics(d);
 }
 
+void DynamicsDraws::list(Vector<Shown>& out) const {
+  const size_t count = options_.size();
+  const auto touches = [](const Row& r, Drawn what, int32_t at, int32_t second) {
+    if (r.what != what) return false;
+    if (what == Drawn::kFriction) return r.first == at && r.count == second;
+    return what == Drawn::kGravity || (at >= r.first && at < r.first + r.count);
+  };
+  // the options other than i that have a factor on a place
+  const auto beside = [&](int32_t i, const Shown& s) {
+    Vector<int32_t> others;
+    for (const Row& r : rows_)
+      if (r.option != i && touches(r, s.what, s.at, s.second) &&
+          std::find(others.begin(), others.end(), r.option) == others.end())
+        others.push_back(r.option);
+    return others;
+  };
+  Vector<Shown> found(count);
+  Vector<uint8_t> known(count, 0);
+  size_t left = count;
+  for (int32_t turn = 0; left > 0; ++turn) {
+    const Vector<uint8_t> before = known;
+    for (const Row& r : rows_) {
+      const auto i = static_cast<size_t>(r.option);
+      const bool pairs = r.what == Drawn::kFriction || r.what == Drawn::kGravity;
+      for (int32_t k = r.first; !known[i] && k < (pairs ? r.first + 1 : r.first + r.count); ++k) {
+        Shown s{specs_[i], options_[i], r.what, k, pairs ? r.count : 0, {}};
+        s.others = beside(r.option, s);
+        const bool clear = std::all_of(s.others.begin(), s.others.end(),
+                                       [&](int32_t o) { return before[static_cast<size_t>(o)] != 0; });
+        if (!clear) continue;
+        found[i] = s;
+        known[i] = 1;
+        --left;
+      }
+    }
+    if (known == before)
+      for (size_t i = 0; i < count; ++i)
+        if (!known[i])
+          fail(Code::kUnsupported,
+               "option show_dynamics: what %s draws cannot be told from what other options draw on the same "
+               "rows; give it a number instead of a range",
+               specs_[i]->key);
+  }
+  for (const Shown& s : found) out.push_back(s);
+}
+
+void DynamicsDraws::show(const Dynamics& d, const Vector<Shown>& list, float* out) {
+  const auto value = [&](const Shown& s) {
+    switch (s.what) {
+      case Drawn::kLinkMass:
+        return d.links[s.at].mass;
+      case Drawn::kLinkKp:
+        return d.links[s.at].kp;
+      case Drawn::kLinkKd:
+        return d.links[s.at].kd;
+      case Drawn::kLinkEffort:
+        return d.links[s.at].effort;
+      case Drawn::kLinkFriction:
+        return d.links[s.at].friction;
+      case Drawn::kBaseMass:
+        return d.bases[s.at].mass;
+      case Drawn::kBaseDamping:
+        return d.bases[s.at].damping;
+      case Drawn::kBodyMass:
+        return d.bodies[s.at].mass;
+      case Drawn::kBodySize:
+        return d.bodies[s.at].size;
+      case Drawn::kBodyDamping:
+        return d.bodies[s.at].angular_damping;
+      case Drawn::kFriction:
+        return d.friction[Dynamics::friction_index(s.at, s.second)];
+      case Drawn::kGravity:
+        return d.gravity;
+    }
+    return 1.0;
+  };
+  // Entry by entry, with what others have on its place worked out again: lists are short, and others' others rare.
+  const auto factor = [&](const auto& self, const Shown& s) -> double {
+    double f = value(s);
+    for (const int32_t o : s.others) f /= self(self, list[static_cast<size_t>(o)]);
+    return f;
+  };
+  for (size_t i = 0; i < list.size(); ++i) {
+    const OptionRange& r = list[i].factor;
+    const double place = 2 * (factor(factor, list[i]) - r.low) / (r.high - r.low) - 1;
+    out[i] = static_cast<float>(std::clamp(place, -1.0, 1.0));
+  }
+}
+
 }  // namespace rdm

@@ -55,6 +55,19 @@ class DynamicsDraws {
   // dynamics.
   void apply(World& world, Stream& stream) const;
 
+  // How one option's factor is read back from a world: its value at one place, over the factors of other options on it.
+  struct Shown {
+    const OptionSpec* spec;
+    OptionRange factor;
+    Drawn what;
+    int32_t at, second;      // the row; of friction the two materials
+    Vector<int32_t> others;  // entries of the list, before this one where it is worked out
+  };
+  // Appends one for each option, in the order of their draws. Error(kUnsupported) where factors cannot be told apart.
+  void list(Vector<Shown>& out) const;
+  // Where in its range each factor of a world lies, out [list.size()] in [-1, 1].
+  static void show(const Dynamics& d, const Vector<Shown>& list, float* out);
+
  private:
   struct Row {
     Drawn what;

@@ -201,7 +201,7 @@ bool Pool::Impl::observe(int32_t env, int32_t step, float* row) {
 bool Pool::Impl::show(int32_t env, int32_t step, float* row) {
   const bool good = clip_row(row, obs_dim, obs_limit);
   if (!good && step == 0) mend_row(row, obs_dim);
-  if (disturbance.fields.empty() || (!good && step > 0)) return good;
+  if (!disturbance.alters_rows() || (!good && step > 0)) return good;
   slots[env].disturbance.show(disturbance, step, row);
   return clip_row(row, obs_dim, obs_limit) && good;
 }

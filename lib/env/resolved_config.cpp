@@ -27,7 +27,7 @@ uint64_t ResolvedPoolConfig::hash_options() const {
       if (value.drawn()) hash = hash_bytes(&value.high, sizeof value.high, hash);
     }
   }
-  return hash_budget(options, hash_disturbance(options, hash));
+  return hash_dynamics(options, hash_budget(options, hash_disturbance(options, hash)));
 }
 
 // A first look finds what chooses other rows (the robots); with those in place all keys must be known.
@@ -51,6 +51,8 @@ void ResolvedPoolConfig::read_options(const PoolConfig& c) {
   specs = disturb_options(&count);
   options.add_table(specs, count);
   specs = budget_options(&count);
+  options.add_table(specs, count);
+  specs = dynamics_options(&count);
   options.add_table(specs, count);
   options.set_all(c.options, c.num_options, c.settings, info->name);
 }
@@ -85,6 +87,7 @@ ResolvedPoolConfig::ResolvedPoolConfig(const PoolConfig& c) : config(c) {
     ~Undo() {
       if (!made) return;
       host_delete(made->config.hooks, made->budget);
+      host_delete(made->config.hooks, made->dynamics);
       host_delete(made->config.hooks, made->table);
     }
   } undo{this};
@@ -100,7 +103,9 @@ ResolvedPoolConfig::ResolvedPoolConfig(const PoolConfig& c) : config(c) {
     options_hash = hash_bytes(&bytes, sizeof bytes, options_hash);
   }
   disturbance = disturbance_from(options, *task, info->name);
-  if (limits.any()) task = budget = host_new<BudgetTask>(config.hooks, *own_task, limits);
+  if (shows_dynamics(options))
+    task = dynamics = host_new<DynamicsTask>(config.hooks, *task, disturbance, info->name);
+  if (limits.any()) task = budget = host_new<BudgetTask>(config.hooks, *task, limits);
   obs_dim = rdm::obs_dim(*task);
   action_dim = task->action_dim();
   cost_dim = info->num_costs;
@@ -112,6 +117,7 @@ ResolvedPoolConfig::ResolvedPoolConfig(const PoolConfig& c) : config(c) {
 
 ResolvedPoolConfig::~ResolvedPoolConfig() {
   host_delete(config.hooks, budget);
+  host_delete(config.hooks, dynamics);
   host_delete(config.hooks, table);
 }
 

@@ -2,6 +2,7 @@
 // and a pool have in common, so that none of them accepts what another refuses.
 #pragma once
 #include "env/budget.hpp"
+#include "env/dynamics_shown.hpp"
 #include "env/option_table.hpp"
 #include "env/options/disturb.hpp"
 #include "env/options/repeat.hpp"
@@ -28,11 +29,12 @@ struct ResolvedPoolConfig {
   TaskRef ref;  // keeps a task that a host may remove
   const TaskInfo* info = nullptr;
   SenseConfig sense;
-  int32_t repeat = 1;            // control steps of one step
-  uint64_t options_hash = 0;     // task name and every option's value
-  TaskHandle own_task;           // as the registry's row makes it
-  BudgetTask* budget = nullptr;  // around it, where a budget is observed
-  const Task* task = nullptr;    // one of the two
+  int32_t repeat = 1;                // control steps of one step
+  uint64_t options_hash = 0;         // task name and every option's value
+  TaskHandle own_task;               // as the registry's row makes it
+  DynamicsTask* dynamics = nullptr;  // around it, where what it draws is observed
+  BudgetTask* budget = nullptr;      // around that, where a budget is observed
+  const Task* task = nullptr;        // the outermost
   Disturbance disturbance;
   int32_t obs_dim = 0, action_dim = 0, cost_dim = 0;
   float obs_limit = 0;

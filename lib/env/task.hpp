@@ -73,6 +73,8 @@ struct Guard {
   float bound = 0;
 };
 
+class DynamicsDraws;
+
 // One task with its options laid in: constant after creation, shared by all worlds of a pool.
 class Task {
  public:
@@ -92,6 +94,8 @@ class Task {
   virtual void reset(World& world, void* state, Stream& stream) const = 0;
   // Draws anew, in the middle of an episode, what a reset draws of the world's dynamics.
   virtual void redraw(World&, Stream&) const {}
+  // Of what a reset draws of the world's dynamics; null: nothing.
+  virtual const DynamicsDraws* draws() const { return nullptr; }
   // Clipped actions [action_dim] to drive targets (and base wrenches) of the next control step.
   virtual void control(World& world, void* state, const float* action) const = 0;
   // After the control step. `step` counts from 1 within the episode.

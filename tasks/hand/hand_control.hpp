@@ -136,6 +136,7 @@ class HandControl {
   void check_state(const void* bytes) const;  // of a saved state: Error(kFormat)
 
   void redraw(World& world, Stream& stream) const { draws_->apply(world, stream); }
+  const DynamicsDraws* draws() const { return draws_; }
   void reset(double noise, bool literal, World& world, const HandControlState& state, Stream& stream) const;
   void control(World& world, const HandControlState& state, const float* action) const;
   // How far the base that went furthest is from its start, m; 0 for fixed ones.

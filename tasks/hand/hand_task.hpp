@@ -25,6 +25,7 @@ class HandTask : public Task {
     hands_.control(world, control_state(state), action);
   }
   void redraw(World& world, Stream& stream) const override { hands_.redraw(world, stream); }
+  const DynamicsDraws* draws() const override { return hands_.draws(); }
   void check_state(const void* state) const final {
     check_own_state(state);
     hands_.check_state(static_cast<const char*>(state) + own_bytes_);

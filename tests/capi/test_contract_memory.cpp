@@ -228,7 +228,11 @@ TEST(ContractMemory, WhatCannotKeepItSaysNo) {
       ASSERT_EQ(rdm_pool_step(pool.get()), RDM_OK);
       ASSERT_EQ(rdm_recording_end_step(recording, pool.get(), nullptr), RDM_OK);
     }
-    says(rdm_agent_clone(agent.get(), recording, nullptr, nullptr), rdm_agent_error(agent.get()), "clone");
+    const rdm_result cloned = rdm_agent_clone(agent.get(), recording, nullptr, nullptr);
+    if (std::strstr(kind, "gru"))
+      says(cloned, rdm_agent_error(agent.get()), "clone");
+    else
+      EXPECT_EQ(cloned, RDM_OK) << rdm_agent_error(agent.get());
     says(rdm_agent_set_recording(agent.get(), recording), rdm_agent_error(agent.get()), "set_recording");
     rdm_recording_destroy(recording);
     // one network is no team

@@ -1,7 +1,8 @@
 #!/bin/sh
 # test_tool_embedded.sh TOOL [FOLDER]: policies of hand_over as C source on bare Cortex-M processors under qemu: the
 # self-test passes, and fails with a number changed; and a table of what they take, of the policies NAME.rdm in the
-# folder instead. eyes: 64,64 beside a cloud of 64 points through an encoder of 16,32. Instructions are qemu's count (valgrind's on x86-64), not cycles.
+# folder instead. eyes: 64,64 beside a cloud of 64 points through an encoder of 16,32; gru: 64,64 and a
+# GRU of 64, with recall's 2 observations. Instructions are qemu's count (valgrind's on x86-64), not cycles.
 models=${2:-}
 [ -z "$models" ] || models=$(realpath "$models")
 . "$(dirname "$0")/tool.sh"
@@ -16,6 +17,7 @@ section() { size -A "$1" | awk -v name="$2" 'index($1, name) == 1 { sum += $2 } 
 row() { printf '| %-15s | %-10s | %-7s | %6s | %7s | %6s | %12s |\n' "$@"; }
 
 m4='-mcpu=cortex-m4 -mfpu=fpv4-sp-d16 -mfloat-abi=hard'
+m7='-mcpu=cortex-m7 -mfpu=fpv5-sp-d16 -mfloat-abi=hard'
 # board FILE NAME MACHINE FLAGS...: compiles for it and runs, output to the file `ran`
 board() {
   file=$1 name=$2 machine=$3
@@ -44,7 +46,10 @@ measure() {  # measure NAME WEIGHTS MACHINE TITLE FLAGS...
 host() {  # host NAME WEIGHTS
   gcc -std=c99 -Os -c "$1.c" -o object.o || { say "$1: gcc fails"; return; }
   act=_act arguments='o, a' cloud=
-  [ -z "$eyes" ] || act=_act_points arguments="o, p, $1_num_points, a" cloud=", p[3 * $1_num_points]"
+  case $eyes in
+    -DEYES) act=_act_points arguments="o, p, $1_num_points, a" cloud=", p[3 * $1_num_points]" ;;
+    -DMEMORY) arguments='o, s, a' cloud=", s[$1_state_size]" ;;
+  esac
   printf '#define REDMAN_POLICY_HEADER\n#include "%s.c"\nint main(void) { static float o[%s_obs_dim], a[%s_action_dim]%s; int i;
     for (i = 0; i < 10; ++i) %s(%s); return a[0] > 2; }\n' "$1" "$1" "$1" "$cloud" "$1$act" "$arguments" > calls.c
   gcc -std=c99 -Os calls.c object.o -o calls
@@ -57,28 +62,35 @@ host() {  # host NAME WEIGHTS
 eyes=
 row target hidden weights .text .rodata stack instructions
 echo '|---|---|---|---|---|---|---|'
-for width in 64 128 eyes; do
+for width in 64 128 eyes gru; do
   model=$models/$width.rdm
-  hidden="--set hidden=$width,$width"
+  eyes='' hidden="--set hidden=$width,$width --set max_steps=20"
   if [ $width = eyes ]; then
     eyes=-DEYES
-    hidden='--set hidden=64,64 --set encoder=16,32 --set encoder_points=64 --set cloud_width=24 --set cloud_height=24'
+    hidden='--set max_steps=20 --set hidden=64,64 --set encoder=16,32 --set encoder_points=64 --set cloud_width=24 --set cloud_height=24'
+  fi
+  if [ $width = gru ]; then
+    eyes=-DMEMORY
+    hidden='--task recall --algo ppo --set hidden=64,64 --set memory=gru:64'
   fi
   if [ -z "$models" ]; then
     # shellcheck disable=SC2086
-    "$tool" train --envs 4 --steps 512 --set max_steps=20 --set horizon=8 $hidden --out run-$width > out 2> err ||
+    "$tool" train --envs 4 --steps 512 --set horizon=8 $hidden --out run-$width > out 2> err ||
       { cat err; exit 1; }
     model=run-$width/policy.rdm
   fi
   for weights in float int8; do
     name=h${width}_$weights
     [ $width = eyes ] && name=eyes_$weights
+    [ $width = gru ] && name=gru_$weights
     flag=
     [ $weights = int8 ] && flag=--int8
     "$tool" export --policy "$model" --c "$name.c" --name "$name" $flag > out || say "$name: no export"
     [ "$(uname -m)" = x86_64 ] && host "$name" $weights
     # shellcheck disable=SC2086
     measure "$name" $weights mps2-an386 'Cortex-M4F' $m4
+    # shellcheck disable=SC2086
+    [ $width = gru ] && measure "$name" $weights mps2-an500 'Cortex-M7' $m7
     measure "$name" $weights mps2-an385 'Cortex-M3' -mcpu=cortex-m3
     measure "$name" $weights mps2-an385 'Cortex-M0' -mcpu=cortex-m0
   done

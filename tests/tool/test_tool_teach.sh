@@ -64,6 +64,21 @@ for word in '"dagger": 1' '"beta": 0.25' '"decisions": 20' '"hidden": "8"' '"war
   grep -qF -- "$word" told/config.json || { echo "told: config.json has no $word"; failed=1; }
 done
 
+# A student that remembers, of a teacher that observes what is drawn; a teacher of other fields is refused with the pair.
+drawn='--set action_delay=0..3 --set scale.kp=0.8..1.2'
+# shellcheck disable=SC2086
+"$tool" train $small $drawn --set show_dynamics=true --out teacher > out 2>&1 || { cat out; failed=1; }
+# shellcheck disable=SC2086
+"$tool" train $small $short --from teacher --dagger 1 --set 'actor_obs=!dynamics.*' --set history=5 \
+  --set 'history_fields=*.joint_position,*.action' --out student > out 2>&1 || { cat out; failed=1; }
+grep -q '^DAgger round 1' out || { echo "no round of the student in $(cat out)"; failed=1; }
+grep -q '"show_dynamics' student/config.json || grep -q 'show_dynamics=true' student/config.json ||
+  { echo "the student's worlds are not the teacher's"; failed=1; }
+"$tool" eval --policy student --episodes 4 > out 2>&1 || { cat out; failed=1; }
+refused 1 'field [0-9]* is dynamics.scale.kp \[1\] to the policy, nothing to the task' --task hand_over_safe_finger --set action_delay=0..3 \
+  --set show_dynamics=false --from teacher/policy.rdm --dagger 1
+refused 1 'option history=k does' --envs 8 --from demo --demo-decisions 4 --set memory=gru:4
+
 head -c 5000 shown.npz > cut.npz
 refused 1 cut.npz --from cut.npz
 refused 1 hidden --from whole --set max_steps=20 --set hidden=8

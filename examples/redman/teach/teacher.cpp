@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <redman/memory.hpp>
 #include <redman/sense.hpp>
 
 #include "common/names.hpp"
@@ -74,7 +75,11 @@ class Lesson {
       recording.end_step(pool_, live_.data());
       for (size_t i = 0; i < n; ++i) count(i, means);
     }
-    for (size_t i = 0; i < n; ++i) over_[i] = !live_[i];
+    for (size_t i = 0; i < n; ++i) {
+      over_[i] = !live_[i];
+      const size_t dim = state_.size() / n;
+      if (over_[i]) std::fill_n(state_.begin() + static_cast<long>(i * dim), dim, 0.0f);
+    }
     teacher_.restart(over_.data());
   }
 
@@ -86,7 +91,8 @@ class Lesson {
       redman::act(*student, pool_.obs().data(), redman::points(redman::sensors(pool_)),
                   static_cast<int32_t>(n), nullptr, held.data());
     else if (student)
-      student->act(pool_.obs().data(), static_cast<int32_t>(n), nullptr, held.data());
+      redman::act(*student, pool_.obs().data(), state_of(*student), static_cast<int32_t>(n), nullptr,
+                  held.data());
     for (size_t i = 0; i < n; ++i) {
       noise_.draw(i);
       const bool taught = !student || noise_.uniform() < beta;
@@ -96,6 +102,11 @@ class Lesson {
         a = std::clamp(a + noise_.row(i)[j], -1.0f, 1.0f);
       }
     }
+  }
+  // What the student remembers of each world, whoever acts in it; null: nothing.
+  float* state_of(const redman::Policy& student) {
+    if (state_.empty()) state_ = redman::start(student, static_cast<int32_t>(pool_.num_envs()));
+    return state_.empty() ? nullptr : state_.data();
   }
   void count(size_t i, RoundMeans* means) {
     if (!live_[i]) return;
@@ -116,6 +127,7 @@ class Lesson {
   int32_t steps_;
   std::vector<uint8_t> live_, over_, won_;
   std::vector<float> meant_;  // [num_envs][action_dim] the teacher's last actions
+  std::vector<float> state_;  // [num_envs][state_dim] of the student
 };
 
 rdm_clone_report clone(const TeachSettings& s, redman::Agent& agent, const redman::Recording& recording,

@@ -26,7 +26,10 @@ struct DisturbOptions {
 };
 struct Disturbance : DisturbOptions {
   Vector<FieldDisturbance> fields;  // in the order of the row, those alone that any option names
+  int32_t delay_entry = -1;         // of a row, that shows the drawn action_delay; -1: none does
 
+  // A row is not shown as it is.
+  bool alters_rows() const { return !fields.empty() || delay_entry >= 0; }
   bool delays_actions() const { return action_delay.high > 0; }
   // A world has numbers of its own for it.
   bool any() const { return !fields.empty() || delays_actions(); }

@@ -1,6 +1,6 @@
 /* The self-test of an exported policy on a bare Cortex-M under qemu, then one line: instructions of a call,
  * and bytes of stack. The exit status is the self-test's. POLICY is the file, NAME its prefix; with EYES it
- * sees a cloud of as many points as it learned from. */
+ * sees a cloud of as many points as it learned from, with MEMORY it has a state. */
 #define main self_test
 #include POLICY
 #undef main
@@ -10,6 +10,9 @@
 #ifdef EYES
 static float cloud[3 * SYMBOL(NAME, _num_points)];
 #define ACT(obs, action) SYMBOL(NAME, _act_points)(obs, cloud, SYMBOL(NAME, _num_points), action)
+#elif defined(MEMORY)
+static float memory[SYMBOL(NAME, _state_size)];
+#define ACT(obs, action) SYMBOL(NAME, _act)(obs, memory, action)
 #else
 #define ACT(obs, action) SYMBOL(NAME, _act)(obs, action)
 #endif
