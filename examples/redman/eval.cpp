@@ -2,6 +2,7 @@
 #include "commands.hpp"
 #include "common/names.hpp"
 #include "common/text.hpp"
+#include "data/score.hpp"
 #include "play/evaluate.hpp"
 
 namespace tool {
@@ -92,7 +93,7 @@ std::string evaluation_text(const Evaluation& e, int32_t episodes) {
 namespace {
 
 struct EvalFlags {
-  std::string policy = "hold", shield = "off";
+  std::string policy = "hold", shield = "off", data;
   PoolSettings pool;
   std::vector<std::string> sets, limits;
   int32_t episodes = kEvalEpisodes;
@@ -110,7 +111,12 @@ Report run_eval(EvalFlags flags) {
   say_trouble(e.summary.trouble, "eval");
   Json json = {{"policy", flags.policy}, {"task", task_at(find_task(flags.pool.task)).name}};
   json.update(evaluation_json(e, flags.episodes));
-  return {json, evaluation_text(e, flags.episodes)};
+  std::string text = evaluation_text(e, flags.episodes);
+  if (!flags.data.empty()) {
+    json["score"] = score_json(read_set(flags.data), e);
+    text += score_text(json["score"]);
+  }
+  return {json, text};
 }
 
 }  // namespace
@@ -129,6 +135,8 @@ void add_eval(CLI::App& app, Run& run) {
   command->add_option("--episodes", flags->episodes, "number of episodes")
       ->check(CLI::Range(1, kMostEpisodes));
   command->add_flag("--stochastic", flags->stochastic, "sample actions instead of taking the mean");
+  command->add_option("--data", flags->data,
+                      "data set (.npz) by whose returns and limits the scores are normalised too");
   add_shield_flag(*command, flags->shield);
   add_cost_limit_flag(*command, flags->limits);
   add_set_flag(*command, flags->sets);

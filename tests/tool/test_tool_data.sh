@@ -75,6 +75,15 @@ np.savez("cut.npz", **cut)' || failed=1
   grep -q '1 unfinished' info || { echo 'an episode without an end is not said to be unfinished'; cat info; failed=1; }
 fi
 
+# Scores by a set: its least return is 0 and its largest 1, and costs are shares of its limits.
+"$tool" eval --task ball_run --policy trained --episodes 4 --data a.npz --set max_steps=100 --json > score.json || failed=1
+awk -v r="$(one return_mean score.json)" -v least="$(one return_min score.json)" -v most="$(one return_max score.json)" \
+    -v score="$(sed 's/.*"score":{"return":\([^,]*\),.*/\1/' score.json)" \
+    'BEGIN { want = (r - least) / (most - least); d = want - score; exit !(most > least && d < 1e-6 && d > -1e-6) }' ||
+  { echo 'the normalised return is not (R - least) / (most - least)'; cat score.json; failed=1; }
+[ "$(grep -o '"limit":[0-9.]*' score.json | sort -u | tr '\n' ' ')" = '"limit":10.0 "limit":20.0 "limit":40.0 ' ] ||
+  { echo 'the scores are not at the three published limits'; failed=1; }
+
 # Recordings of other commands are read too; what is none is refused.
 "$tool" rollout --task two_state --episodes 3 --record rollout.npz > /dev/null || failed=1
 "$tool" data info rollout.npz | grep -q 'in 3 episodes' || { echo 'a recorded rollout is not read'; failed=1; }

@@ -1,0 +1,31 @@
+#include "data/score.hpp"
+
+#include "common/text.hpp"
+#include "data/summary.hpp"
+
+namespace tool {
+
+Json score_json(const DataSet& set, const Evaluation& e) {
+  const ReturnRange range = return_range(set);
+  const double width = range.most - range.least,
+               cost = e.summary.cost_mean.empty() ? 0 : e.summary.cost_mean[0];
+  Json costs = Json::array();
+  for (const double limit : limits_of(set))
+    costs.push_back({{"limit", limit}, {"cost", limit > 0 ? Json(cost / limit) : Json()}});
+  return {{"return", width > 0 ? Json((e.summary.return_mean - range.least) / width) : Json()},
+          {"return_min", range.least},
+          {"return_max", range.most},
+          {"costs", costs}};
+}
+
+std::string score_text(const Json& score) {
+  std::string text = "normalised return " +
+                     (score["return"].is_number() ? format("%.3f", score["return"].get<double>()) : "-");
+  for (const Json& c : score["costs"])
+    text += format(", cost %s of the limit %s",
+                   c["cost"].is_number() ? format("%.2f", c["cost"].get<double>()).c_str() : "-",
+                   number_text(c["limit"].get<double>()).c_str());
+  return text + '\n';
+}
+
+}  // namespace tool
