@@ -10,6 +10,7 @@ namespace rdm {
 extern const AlgoRow kPpo, kTrpo, kPpoLag, kTrpoLag, kCppoPid, kCpo, kPcpo, kFocops, kP3o, kIpo, kPdo, kRcpo,
     kCup, kCrpo;
 extern const AlgoRow kMappo, kMappoLag, kHappo, kMacpo, kIppo, kIppoLag;
+extern const AlgoRow kTd3, kTd3Lag, kTd3Pid, kSac, kSacLag, kSacPid;
 
 // The row of an algorithm whose class is T.
 template <class T, class Rows>

@@ -79,7 +79,8 @@ void Agent::carve(Arena& arena) {
   fields_ = keep_fields(arena, resolved_.config.fields, resolved_.config.num_fields);
   shuffle_ = arena.make<Stream>(static_cast<size_t>(resolved_.blocks));
   spread_ = arena.make<double>(resolved_.state_std() ? 2 * static_cast<size_t>(resolved_.blocks) : 0);
-  char* names = arena.make<char>(static_cast<size_t>(nets_.num_tensors()) * kTensorNameSize);
+  const auto tensors = static_cast<size_t>(nets_.num_tensors() + num_own_tensors());
+  char* names = arena.make<char>(tensors * kTensorNameSize);
   names_ = reinterpret_cast<char(*)[kTensorNameSize]>(names);
 }
 
@@ -105,7 +106,9 @@ void Agent::open(const AgentConfig& config) {
   opened();
   read_live();
   TensorInfo t;
-  for (int32_t i = 0; find_tensor(nets_, i, names_[i], &t);) ++i;
+  const int32_t tensors = nets_.num_tensors();
+  for (int32_t i = 0; i < tensors; ++i) find_tensor(nets_, i, names_[i], &t);
+  for (int32_t i = 0; i < num_own_tensors(); ++i) own_tensor(i, names_[tensors + i], &t);
   AgentConfig& c = resolved_.config;
   c.task = resolved_.task;
   c.defaults = c.options = nullptr;
@@ -169,10 +172,17 @@ void Agent::need_no_memory(const char* call) const {
          call, resolved_.gru.units ? "memory" : "history");
 }
 
+void Agent::need_on_policy(const char* call) const {
+  if (resolved_.off_policy())
+    fail(Code::kUnsupported, "%s: %s learns from a replay memory, and does not support this call", call,
+         resolved_.row->info.name);
+}
+
 void Agent::begin_decision(const char* call) {
   need_no_update(call);
   if (collector_.idle()) check_cancel(), sampler_ = 0;
-  for (int32_t i = 0; !resolved_.values_costs && i < resolved_.num_limited; ++i)
+  collector_.set_uniform(explores_blindly());
+  for (int32_t i = 0; resolved_.row->costs == Costs::kInReward && i < resolved_.num_limited; ++i)
     collector_.set_charge(i, cost_weight(i) * resolved_.shared.reward_factor);
   if (imitation_.wanted() && !imitation_.has_rows())
     fail(Code::kState, "%s: option imitation needs a recording; call rdm_agent_set_recording first", call);
@@ -194,6 +204,7 @@ void Agent::need_generation(const char* call, const Transition& t) {
 void Agent::values(const float* obs, int32_t rows, float* value, float* cost) const {
   const SharedOptions& o = resolved_.shared;
   need_no_update("values");
+  need_on_policy("values");
   if (resolved_.history > 1) need_no_memory("values");
   if (o.normalize_reward || o.normalize_cost)
     fail(Code::kUnsupported, "agent: with option %s the values of its critics have no fixed unit",
@@ -263,6 +274,7 @@ CloneReport Agent::clone(const DemoRows& demo, const CloneOptions& how) {
   const FpMode mode;
   const HostScope scope(resolved_.config.hooks);
   need_idle("clone");
+  need_on_policy("clone");
   if (resolved_.gru.units)
     fail(Code::kUnsupported,
          "clone: the agent has a memory (option memory), through which it does not learn from labels yet; "
@@ -302,6 +314,7 @@ PretrainReport Agent::pretrain(const PointRows& clouds, const uint8_t* label, in
 
 void Agent::set_recording(const DemoRows& demo, uint64_t mark) {
   need_idle("set_recording");
+  if (demo.rows > 0) need_on_policy("set_recording");
   if (demo.rows > 0) need_no_memory("set_recording");
   need_clouds(demo);
   imitation_.set(demo, mark, resolved_.config.hooks);
@@ -317,6 +330,7 @@ void Agent::need_same_shape(const PolicyView& p) const {
   if (p.action_dim() != c.action_dim) differ("action_dim");
   if (p.layout_hash && c.layout_hash && p.layout_hash != c.layout_hash) differ("layout_hash");
   if (p.state_std != nets_.state_std()) differ("std_mode");
+  if (p.squash != nets_.squash) differ("how actions are squashed");
   if (p.actor.num_hidden != actor.num_hidden ||
       !std::equal(actor.hidden, actor.hidden + actor.num_hidden, p.actor.hidden))
     differ("hidden");
@@ -359,6 +373,7 @@ void Agent::load_policy(const PolicyView& p, double samples) {
   if (!nets_.state_std()) std::copy_n(p.log_std, nets_.action_dim, nets_.log_std());
   clamp_log_std(nets_);
   restart_average(nets_);
+  actor_replaced();
   Adam& adam = nets_.block[Networks::kActor].adam;
   std::fill_n(adam.m, adam.size, 0.0f);
   std::fill_n(adam.v, adam.size, 0.0f);
@@ -379,7 +394,8 @@ void Agent::load_policy(const PolicyView& p, double samples) {
 
 bool Agent::tensor(int32_t index, TensorInfo* out) {
   char name[kTensorNameSize];
-  if (!find_tensor(nets_, index, name, out)) return false;
+  const int32_t own = index - nets_.num_tensors();
+  if (own < 0 ? !find_tensor(nets_, index, name, out) : !own_tensor(own, name, out)) return false;
   out->name = names_[index];
   return true;
 }
@@ -429,6 +445,7 @@ void Agent::load(const void* bytes, size_t size) {
   check_state(bytes, size);
   read_state(bytes, size, true);
   collector_.after_load();
+  after_load();
   workers_.ranks().restart();
   clamp_log_std(nets_);
   end_run();
@@ -452,6 +469,7 @@ PolicyView Agent::policy_view() {
   v.columns = nets_.columns[Networks::kActor];
   v.row_dim = resolved_.config.obs_dim;
   v.group = nets_.group, v.num_groups = nets_.num_groups;
+  v.squash = nets_.squash;
   v.params = nets_.kept_actor();
   v.eyes = nets_.eyes;
   v.eyes_params = v.params + nets_.eyes_offset();

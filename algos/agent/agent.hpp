@@ -66,6 +66,8 @@ class Agent {
   // What it remembers of environments, as Collector::forget.
   void forget(bool by_mean, const uint8_t* mask);
   bool remembers() const { return resolved_.remembers(); }
+  // Error(kUnsupported) for a learner from a replay memory.
+  void need_on_policy(const char* call) const;
   // Error(kUnsupported) for an agent with a memory.
   void need_no_memory(const char* call) const;
   // A decision that the policy of this generation took elsewhere, in the place of act and record. As act draws
@@ -116,6 +118,7 @@ class Agent {
   void tensors_changed() {
     clamp_log_std(nets_);
     restart_average(nets_);
+    actor_replaced();
     sampler_ = 0;
   }
 
@@ -155,6 +158,18 @@ class Agent {
   // A step of the policy over the whole batch, before the passes: job after job until there is none.
   virtual void begin_step() {}
   virtual Job step_on() { return {}; }
+  // Of learners from a replay memory (off_policy/). The full horizon, before an update begins.
+  virtual void take_horizon(const float*) {}
+  // Samples are uniform, whatever the policy.
+  virtual bool explores_blindly() const { return false; }
+  // Tensors behind those of the networks; name [kTensorNameSize].
+  virtual int32_t num_own_tensors() const { return 0; }
+  virtual bool own_tensor(int32_t, char*, TensorInfo*) const { return false; }
+  // After somebody else wrote into the networks, and after a state was read.
+  virtual void actor_replaced() {}
+  virtual void after_load() {}
+  virtual double mean_value(bool of_cost) const { return collector_.mean_value(of_cost); }
+  virtual int64_t skipped() const { return learner_.skipped(); }
   // Rounds of all passes, in which the policy learns: each of one group where the groups of a team learn in turn. The
   // critics learn in the first.
   virtual int32_t turns() const { return 1; }
@@ -186,7 +201,10 @@ class Agent {
 
   const ResolvedAgentConfig& resolved() const { return resolved_; }
   Networks& nets() { return nets_; }
+  const Networks& nets() const { return nets_; }
   BatchWorkers& workers() { return workers_; }
+  const Normalizer& normalizer() const { return collector_.normalizer(); }
+  bool normalizes() const { return collector_.normalizes(); }
   Learner& learner() { return learner_; }
   // Share of a linear schedule that is left in this epoch.
   double schedule_share() const { return schedule_.share(epoch_); }

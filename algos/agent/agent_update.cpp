@@ -51,6 +51,7 @@ void Agent::begin_update(const float* last_obs) {
   try {
     collector_.settle();
     collector_.begin_estimate(last_obs);
+    take_horizon(last_obs);
   } catch (...) {
     drop_horizon();
     throw;
@@ -148,7 +149,7 @@ void Agent::judge_epoch() {
   run_.stats = collector_.episodes().stats();
   run_.totals = collector_.totals();
   run_.warm = epoch_ < resolved_.shared.warm_epochs;
-  run_.skipped = learner_.skipped();
+  run_.skipped = this->skipped();
   learned_ = Learned();
   imitation_.begin_epoch(std::max(0, epoch_ - resolved_.shared.warm_epochs));
   warn_of_limits(run_.stats);
@@ -207,7 +208,7 @@ void Agent::end_update() {
     learned_.mean.reward_loss *= rounds, learned_.mean.cost_loss *= rounds;
   }
   if (!warm && valid_rows() > 0) report(learned_);
-  const int64_t skipped = learner_.skipped() - run_.skipped;
+  const int64_t skipped = this->skipped() - run_.skipped;
   if (skipped > 0)
     log(resolved_.config.hooks, LogLevel::kWarning, "update: %lld gradients were not finite and left out",
         static_cast<long long>(skipped));
@@ -378,8 +379,8 @@ void Agent::fill_learned(double rate, Epoch& e) {
   e.loss_reward_value = learned_.mean.reward_loss;
   e.loss_cost_value = learned_.mean.cost_loss;
   e.clip_fraction = learned_.mean.clipped;
-  e.value_reward = collector_.mean_value(false);
-  if (resolved_.values_costs) e.value_cost = collector_.mean_value(true);
+  e.value_reward = mean_value(false);
+  if (resolved_.values_costs || resolved_.off_policy()) e.value_cost = mean_value(true);
 }
 
 }  // namespace rdm

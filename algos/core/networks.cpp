@@ -27,7 +27,9 @@ struct From {
   float operator[](size_t i) const { return list[at + i]; }
 };
 
-// Moments that some gradients can have left: with m = sum (1 - a) a^k g_k and v = sum (1 - b) b^k g_k^2 it is
+}  // namespace
+
+// With m = sum (1 - a) a^k g_k and v = sum (1 - b) b^k g_k^2 it is
 // |m| <= sqrt(v) (1 - a) / sqrt((1 - b) (1 - a^2 / b)) = 7.27 sqrt(v) (Cauchy and Schwarz), but for squares
 // below the smallest float. So no step is longer than that many learning rates.
 bool moments_agree(const StateView<float>& m, const StateView<float>& v, size_t size) {
@@ -35,7 +37,6 @@ bool moments_agree(const StateView<float>& m, const StateView<float>& v, size_t 
     if (std::abs(static_cast<double>(m[i])) > 8 * std::sqrt(static_cast<double>(v[i])) + 1e-15) return false;
   return true;
 }
-}  // namespace
 
 Networks carve_networks(Arena& arena, const ResolvedAgentConfig& resolved) {
   Networks n;
@@ -61,12 +62,13 @@ Networks carve_networks(Arena& arena, const ResolvedAgentConfig& resolved) {
   n.actor_params = resolved.actor_params();
   n.eyes = resolved.eyes;
   n.frozen = resolved.frozen;
-  n.count = resolved.values_costs ? 3 : 2;
+  n.count = resolved.off_policy() ? 1 : resolved.values_costs ? 3 : 2;
   n.action_dim = resolved.config.action_dim;
   n.std_size = resolved.state_std() ? 0 : (resolved.action_dim() + 15) / 16 * 16;
   n.std_low = static_cast<float>(elementary::log(resolved.shared.std_min));
   n.std_high = static_cast<float>(elementary::log(resolved.shared.std_max));
   n.log_share = resolved.log_share;
+  n.squash = resolved.row->squash;
   n.input_bound = resolved.shared.normalize_obs ? resolved.shared.obs_clip : 1e3;
   for (int32_t i = 0; i < n.count; ++i) {
     n.block[i].offset = n.size;
@@ -262,6 +264,7 @@ void init_networks(const Networks& n, const ResolvedAgentConfig& resolved) {
     float* log_std = n.state_std() ? bias + count : n.log_std() + first;
     for (int32_t j = 0; j < count; ++j) {
       bias[j] = resolved.config.initial_mean ? resolved.config.initial_mean[first + j] : 0;
+      if (n.squash != Squash::kNone) bias[j] = static_cast<float>(unsquash(static_cast<double>(bias[j])));
       log_std[j] = static_cast<float>(elementary::log(resolved.shared.init_std));
     }
   };

@@ -18,6 +18,7 @@
 #include "algos/core/resolved_config.hpp"
 #include "algos/core/state_io.hpp"
 #include "nn/adam.hpp"
+#include "nn/squash.hpp"
 
 namespace rdm {
 
@@ -73,6 +74,7 @@ struct Networks {
   int32_t action_dim = 0;
   float std_low = 0, std_high = 0;  // bounds on the log deviations that the network gives
   float log_share = 0;              // of the innovation in them
+  Squash squash = Squash::kNone;    // of the actor's outputs
   double input_bound = 0;           // on the magnitude of inputs
   float* params = nullptr;
   // Option average: the actor's block as the mean over past epochs, of which the last ones count most; null:
@@ -200,6 +202,9 @@ void keep_actor(const Networks& n);
 void restore_actor(const Networks& n);
 // With std_schedule=linear the deviation for the epoch that follows `done` finished ones.
 void schedule_std(const Networks& n, const SharedOptions& options, int32_t done);
+
+// Moments of Adam that some gradients can have left.
+bool moments_agree(const StateView<float>& m, const StateView<float>& v, size_t size);
 
 inline constexpr int32_t kTensorNameSize = 72;
 // Tensor `index` in the order above, names "actor.log_std", "actor.0.weight", "cost_critic.2.bias"; of an

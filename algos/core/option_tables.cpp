@@ -168,9 +168,22 @@ bool take_owner(const AlgoRow& algo, OptionInput& in) {
   return is_or_extends(algo, owner.name);
 }
 
+// What tasks and presets say of these they say to learners that forget what they did: how much to collect before an
+// update, and rates that fit it. A replay memory has its own, or "sac:horizon" in a task.
+bool for_on_policy(const char* key) {
+  for (const char* own :
+       {"horizon", "hidden", "critic_hidden", "activation", "last_layer_scale", "init_std", "std_min",
+        "std_max", "learning_rate", "critic_learning_rate", "max_grad_norm", "average"})
+    if (same_name(key, own)) return true;
+  for (const char* own : {"multiplier_", "pid_"})
+    if (std::strncmp(key, own, std::strlen(own)) == 0) return true;
+  return false;
+}
+
 void lay_default(Options& o, const AlgoRow& algo, OptionInput in) {
   if (!in.key) fail(Code::kArgument, "%s default: its key is NULL", kOwner);
   if (is_group_set(in.key)) return;
+  if (algo.off_policy && for_on_policy(in.key)) return;
   if (!take_owner(algo, in)) return;
   if (!o.knows(in.key)) {
     if (!any_algo_knows(in.key)) o.set(in, kOwner);  // names the nearest key
@@ -183,15 +196,15 @@ void lay_default(Options& o, const AlgoRow& algo, OptionInput in) {
 }
 
 void lay_preset(Options& o, const AgentConfig& config, const AlgoRow& algo) {
-  const SharedOptions below = kSharedRows.read(o);
+  const SharedOptions below = read_shared_options(o, algo);
   // Without the length of an episode there is nothing to charge.
   const bool length = config.max_steps > 0 || below.episode_steps > 0;
   for (const PresetValue& v : kPresetValues) {
     if (same_name(v.key, "terminal_cost") && !length) continue;
-    if (v.algos && !among(v.algos, algo)) continue;
+    if (v.algos ? !among(v.algos, algo) : algo.off_policy && for_on_policy(v.key)) continue;
     if (same_name(v.preset, below.preset) && o.knows(v.key)) o.set_default(v.key, v.text);
   }
-  if (same_name(below.preset, "omnisafe")) {
+  if (same_name(below.preset, "omnisafe") && o.knows("minibatches")) {
     const int64_t rows = int64_t{kSharedRows.read(o).horizon} * config.num_envs;
     const int64_t size = among(kTrustRegion, algo) ? 128 : 64;
     o.set_default("minibatches", static_cast<double>(std::clamp<int64_t>(rows / size, 1, 1 << 20)));
@@ -199,6 +212,10 @@ void lay_preset(Options& o, const AgentConfig& config, const AlgoRow& algo) {
 }
 
 }  // namespace
+
+SharedOptions read_shared_options(const Options& options, const AlgoRow& row) {
+  return row.shared ? row.shared(options) : kSharedRows.read(options);
+}
 
 std::span<const PresetValue> preset_values() {
   return kPresetValues;
@@ -214,7 +231,7 @@ Options read_options(const AgentConfig& config, const AlgoRow& row) {
   for (int32_t i = 0; i < config.num_defaults; ++i) lay_default(o, row, config.defaults[i]);
   lay_preset(o, config, row);
   // A schedule that nobody asked for gives way.
-  if (kSharedRows.read(o).state_std) o.set_default("std_schedule", "none");
+  if (read_shared_options(o, row).state_std && o.knows("std_schedule")) o.set_default("std_schedule", "none");
   return o;
 }
 

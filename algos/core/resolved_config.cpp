@@ -100,7 +100,7 @@ MlpShape parse_shape(const char* key, const char* widths, Activation activation,
 Options read_limited_options(const AgentConfig& c, const AlgoRow& algo) {
   Options o = read_options(c, algo);
   if (c.cost_dim == 0 || o.given("cost_limit")) return o;
-  if (kSharedRows.read(o).shield_learn == ShieldLearn::kCost)  // column 0 counts refusals
+  if (read_shared_options(o, algo).shield_learn == ShieldLearn::kCost)  // column 0 counts refusals
     o.set_default("cost_limit", 1.0);
   else if (c.cost_limits)
     o.set_default("cost_limit", c.cost_limits[0] < 0 ? -1.0 : c.cost_limits[0]);
@@ -130,7 +130,7 @@ void resolve_costs(ResolvedAgentConfig& resolved) {
          "most "
          "violated one",
          resolved.row->info.name, resolved.num_limited);
-  resolved.values_costs = resolved.row->costs != Costs::kInReward;
+  resolved.values_costs = resolved.row->costs != Costs::kInReward && !resolved.off_policy();
   if (resolved.row->adapt) resolved.row->adapt(resolved);
 }
 
@@ -325,6 +325,9 @@ void resolve_networks(ResolvedAgentConfig& resolved) {
 void resolve_blocks(ResolvedAgentConfig& resolved) {
   const int32_t blocks = resolved.shared.blocks, ranks = resolved.config.ranks.count;
   const int32_t envs = resolved.all_envs(), own = blocks / ranks;
+  if (resolved.off_policy() && ranks > 1)
+    fail(Code::kUnsupported, "ranks: %s learns from the replay memory of one process; there are %d",
+         resolved.row->info.name, ranks);
   if (envs % blocks != 0)
     fail(Code::kArgument, "blocks: %d does not divide the number of environments, %d", blocks, envs);
   if (blocks % ranks != 0 || (ranks > 1 && (own & (own - 1)) != 0))
@@ -377,7 +380,7 @@ void check_pairs(const ResolvedAgentConfig& resolved) {
 }  // namespace
 
 void ResolvedAgentConfig::read_shared() {
-  shared = kSharedRows.read(options);
+  shared = read_shared_options(options, *row);
 }
 
 double limit_of_first(const ResolvedAgentConfig& resolved) {

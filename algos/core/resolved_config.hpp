@@ -4,14 +4,13 @@
 #include <utility>
 
 #include "algos/core/agent_types.hpp"
+#include "algos/core/algo_row.hpp"
 #include "algos/core/groups.hpp"
 #include "algos/core/shared_options.hpp"
 #include "nn/gru.hpp"
 #include "nn/pointnet.hpp"
 
 namespace rdm {
-
-struct AlgoRow;
 
 struct ResolvedAgentConfig {
   ResolvedAgentConfig(const AgentConfig& c, Options&& o, const AlgoRow& r)
@@ -46,7 +45,7 @@ struct ResolvedAgentConfig {
   Vector<ActorGroup> reward_critics, cost_critics;
   Vector<GroupSpec> critic_specs;
   int32_t num_limited = 0;         // limited cost columns; 0 for algorithms without costs
-  bool values_costs = false;       // they have a critic
+  bool values_costs = false;       // they have a critic of rows
   int32_t column[kMaxCosts] = {};  // [num_limited] column of each
   double limit[kMaxCosts] = {};    // [num_limited] on the sum over an episode, or over rate_steps
   int32_t episode_steps = 0;       // control steps after which an episode is counted as ended; 0: never
@@ -59,6 +58,7 @@ struct ResolvedAgentConfig {
   int32_t workers = 1;         // chunks in flight
   float log_share = 0;         // ln of the innovation's share of the standard deviation
 
+  bool off_policy() const { return row->off_policy; }
   int32_t num_groups() const { return static_cast<int32_t>(groups.size()); }
   // Critics of a kind, each of which values every row.
   int32_t num_critics() const { return std::max(1, static_cast<int32_t>(reward_critics.size())); }

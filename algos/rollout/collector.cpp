@@ -149,6 +149,7 @@ void Collector::mean_rows(const Workspace& workspace, const float* obs, const Po
     if (memory_) memory_.push_mean(normalized(obs, rows, workspace.obs), first, rows);
   }
   if (y != action) split_head(y, rows, action, nullptr);
+  squash(nets_->squash, action, static_cast<size_t>(rows) * rollout_.action_dim);
 }
 
 PointRows Collector::keep_points(const PointRows& clouds, size_t at, int32_t rows) const {
@@ -173,9 +174,10 @@ void Collector::act_rows(const Workspace& workspace, const float* obs, const Poi
                          int32_t rows, float* action, const float* given) {
   Rollout& r = rollout_;
   const size_t at = r.row(r.filled) + static_cast<size_t>(first), dim = r.action_dim;
-  float* x = r.obs + at * r.obs_dim;
-  if (normalized(obs, rows, x) != x)
-    std::memcpy(x, obs, static_cast<size_t>(rows) * r.obs_dim * sizeof(float));
+  float* const kept = r.obs + at * r.obs_dim;
+  const float* x = normalized(obs, rows, r.replayed ? workspace.obs : kept);
+  if (r.replayed || x != kept) std::memcpy(kept, obs, static_cast<size_t>(rows) * r.obs_dim * sizeof(float));
+  if (!r.replayed) x = kept;
   float *mean = r.mean + at * dim, *y = nets_->state_std() ? workspace.out : mean;
   const float* seen = stacked(workspace, x, first, rows, false);
   if (nets_->gru.units) {
@@ -188,8 +190,9 @@ void Collector::act_rows(const Workspace& workspace, const float* obs, const Poi
     std::memcpy(r.features + (at + i) * r.row_features,
                 nets_->features(workspace.actor) + i * nets_->feature_step(), r.row_features * sizeof(float));
   if (y != mean) split_head(y, rows, mean, r.log_std_of(at));
-  values(workspace, seen, rows, r.value + at * r.critics,
-         r.cost_value + at * r.critics * static_cast<size_t>(r.num_costs));
+  if (!r.replayed)
+    values(workspace, seen, rows, r.value + at * r.critics,
+           r.cost_value + at * r.critics * static_cast<size_t>(r.num_costs));
   float own_std[kMaxActions];
   for (size_t i = 0; i < static_cast<size_t>(rows); ++i) {
     float* centered = r.action + (at + i) * dim;
@@ -197,12 +200,37 @@ void Collector::act_rows(const Workspace& workspace, const float* obs, const Poi
     if (nets_->state_std()) kernels().map_exp(log_std, dim, own_std), std = own_std;
     const int32_t env = first + static_cast<int32_t>(i);
     if (normalizes()) usual_.see(static_cast<size_t>(env), novelty(obs + i * r.obs_dim));
+    if (r.replayed) {
+      decide_replayed(env, mean + i * dim, std, given ? given + i * dim : nullptr,
+                      action ? action + i * dim : nullptr, centered);
+      continue;
+    }
     if (given)
       noise_.take(env, mean + i * dim, given + i * dim, centered);
     else
       noise_.sample(env, mean + i * dim, std, action + i * dim, centered);
     keep_log_prob(r, at + i, mean + i * dim, log_std);
   }
+}
+
+// The action of one row, or the one that was given, and what is kept of it: what the worlds make of it.
+void Collector::decide_replayed(int32_t env, const float* mean, const float* std, const float* given,
+                                float* action, float* kept) {
+  const size_t dim = rollout_.action_dim;
+  if (given) {
+    std::copy_n(given, dim, kept);
+  } else if (uniform_) {
+    noise_.uniform(env, action);
+    std::copy_n(action, dim, kept);
+  } else {
+    float center[kMaxActions];
+    std::copy_n(mean, dim, center);
+    if (nets_->squash == Squash::kMean) squash(nets_->squash, center, dim);
+    noise_.sample(env, center, std, action, kept);
+    if (nets_->squash == Squash::kSample) squash(nets_->squash, action, dim);
+    std::copy_n(action, dim, kept);
+  }
+  for (size_t j = 0; j < dim; ++j) kept[j] = std::clamp(kept[j], -1.0f, 1.0f);
 }
 
 void Collector::check_clouds(const PointRows& clouds) const {
@@ -280,6 +308,10 @@ void Collector::replace(int32_t env, const float* action) {
   Rollout& r = rollout_;
   const size_t at = r.row(r.filled) + static_cast<size_t>(env), dim = r.action_dim;
   const float* mean = r.mean + at * dim;
+  if (r.replayed) {
+    for (size_t j = 0; j < dim; ++j) r.action[at * dim + j] = std::clamp(action[j], -1.0f, 1.0f);
+    return;
+  }
   noise_.replace(env, mean, action, r.action + at * dim);
   keep_log_prob(r, at, mean, r.log_std_of(at));
 }
@@ -296,11 +328,16 @@ void Collector::foresee(const int32_t* env, const float* obs, int32_t rows, Stre
     for (size_t i = 0; i < static_cast<size_t>(n); ++i) {
       float* mean = out + i * dim;
       if (y != out) split_head(y + 2 * i * dim, 1, mean, log_std);
+      if (!noise || nets_->squash == Squash::kMean) squash(nets_->squash, mean, dim);
       if (!noise) continue;
       const float* std = std_;
       if (y != out) kernels().map_exp(log_std, dim, own_std), std = own_std;
       const auto e = static_cast<size_t>(env[at + i]);
-      noise_.foresee(mean, std, &noise[e], offset + e * dim, mean);
+      if (uniform_)
+        Noise::foresee_uniform(&noise[e], mean, static_cast<int32_t>(dim));
+      else
+        noise_.foresee(mean, std, &noise[e], offset + e * dim, mean);
+      if (!uniform_ && nets_->squash == Squash::kSample) squash(nets_->squash, mean, dim);
     }
   });
 }
@@ -358,7 +395,7 @@ void Collector::value_truncated(const Transition& t) {
   const size_t costs = critics * static_cast<size_t>(resolved_->num_limited);
   std::memset(final_value_, 0, resolved_->num_envs() * critics * sizeof(float));
   std::memset(final_cost_, 0, resolved_->num_envs() * costs * sizeof(float));
-  if (!t.truncated || !t.final_obs) return;
+  if (rollout_.replayed || !t.truncated || !t.final_obs) return;
   int32_t count = 0;
   for (size_t i = 0; i < resolved_->num_envs(); ++i)
     if (t.truncated[i] && !flag(t.terminated, i, false) && flag(t.valid, i, true))
@@ -493,6 +530,7 @@ void Collector::record_row(const Transition& t, int32_t env) {
         limited[k] = learned[resolved_->column[i]] + discount * final_cost_[e * critics * costs + k];
     }
     r.discount[at] = over ? 0 : discount;
+    if (r.replayed && (r.over[at] = over)) keep_final(t, env, at, discount);
   }
   float fall[kMaxCosts] = {};
   end_row(t, env, discount, fall);
@@ -503,6 +541,15 @@ void Collector::record_row(const Transition& t, int32_t env) {
   r.discount[at] = 0;
   std::fill_n(limited, critics * costs, 0.0f);
   noise_.end_episode(env);
+}
+
+// Of the row that an episode ended with: a time limit is no end of what follows, if that was seen.
+void Collector::keep_final(const Transition& t, int32_t env, size_t at, float discount) {
+  const auto e = static_cast<size_t>(env);
+  if (!flag(t.truncated, e, false) || flag(t.terminated, e, false) || !t.final_obs) return;
+  const size_t dim = rollout_.obs_dim;
+  std::copy_n(t.final_obs + e * dim, dim, rollout_.final_obs + at * dim);
+  rollout_.discount[at] = discount;
 }
 
 void Collector::record(const Transition& t) {
@@ -607,6 +654,8 @@ double Collector::mean_value(bool of_cost) const {
 
 void Collector::begin_estimate(const float* last_obs) {
   const Rollout& r = rollout_;
+  column_ = -resolved_->num_critics();
+  if (r.replayed) return;
   workers_->sweep(
       r.num_envs, resolved_->chunk_rows, [&](const Workspace& workspace, int32_t first, int32_t rows) {
         const auto at = static_cast<size_t>(first);
@@ -614,11 +663,10 @@ void Collector::begin_estimate(const float* last_obs) {
         values(workspace, stacked(workspace, x, first, rows, false), rows, r.last_value + at * r.critics,
                r.last_cost_value + at * r.critics * static_cast<size_t>(r.num_costs));
       });
-  column_ = -resolved_->num_critics();
 }
 
 bool Collector::estimate_on() {
-  if (column_ < (resolved_->values_costs ? resolved_->num_critics() * rollout_.num_costs : 0)) {
+  if (!rollout_.replayed && column_ < (resolved_->values_costs ? resolved_->num_critics() * rollout_.num_costs : 0)) {
     const SharedOptions& o = shared();
     estimate_advantage(rollout_, column_++,
                        {o.lambda, o.cost_lambda, o.standardize_reward_adv, o.standardize_cost_adv},

@@ -80,6 +80,9 @@ class Collector {
   // What a unit of limited cost i takes off the reward of the rows to come, where costs have no critic.
   void set_charge(int32_t i, double weight) { charge_[i] = static_cast<float>(weight); }
 
+  // Of a replayed rollout: samples are uniform in [-1, 1], whatever the policy.
+  void set_uniform(bool uniform) { uniform_ = uniform; }
+
   const Rollout& rollout() const { return rollout_; }
   Episodes& episodes() { return episodes_; }
   const Episodes& episodes() const { return episodes_; }
@@ -112,6 +115,9 @@ class Collector {
   void decide(const float* obs, const PointRows& clouds, float* action, const float* given);
   void act_rows(const Workspace& workspace, const float* obs, const PointRows& clouds, int32_t first,
                 int32_t rows, float* action, const float* given);
+  void decide_replayed(int32_t env, const float* mean, const float* std, const float* given, float* action,
+                       float* kept);
+  void keep_final(const Transition& t, int32_t env, size_t at, float discount);
   void need_turn(const char* call) const;
   int32_t share(int32_t rows) const;  // of a worker's chunk
   // What a network with std_mode=state gives, taken apart: means, log deviations (null: not wanted).
@@ -171,6 +177,7 @@ class Collector {
   // Of this horizon: [num_envs][cost_dim], [num_envs], and counts that need no order.
   double *epoch_cost_ = nullptr, *epoch_steps_ = nullptr;
   int64_t invalid_ = 0, cut_ = 0, status_[EpochTotals::kStatusKinds] = {};
+  bool uniform_ = false;
   bool pending_ = false;  // a sampled act waits for its record
 };
 

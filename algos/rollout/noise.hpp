@@ -23,6 +23,11 @@ class Noise {
   // What sample will draw next of copies of an environment's stream and offset [action_dim]; both go on.
   void peek(int32_t env, Stream* stream, float* offset) const;
   void foresee(const float* mean, const float* std, Stream* stream, float* offset, float* action) const;
+  // Draws action [action_dim] uniformly in [-1, 1) instead; the noise stays where it is.
+  void uniform(int32_t env, float* action) { foresee_uniform(&stream_[env], action, dim_); }
+  static void foresee_uniform(Stream* stream, float* action, int32_t dim) {
+    stream->signed_units(action, dim);
+  }
   static constexpr float kMaxAction = 1e5f;
   void end_episode(int32_t env);
   float correlation() const { return correlation_; }

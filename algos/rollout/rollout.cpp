@@ -87,6 +87,9 @@ Rollout carve_rollout(Arena& arena, const ResolvedAgentConfig& resolved) {
   r.std_step = resolved.state_std() ? r.action_dim : 0;
   r.log_std = arena.make<float>(resolved.state_std() ? n * r.action_dim : r.action_dim);
   r.order = arena.make<int32_t>(n);
+  r.replayed = resolved.off_policy();
+  r.over = arena.make<uint8_t>(r.replayed ? n : 0);
+  r.final_obs = arena.make<float>(r.replayed ? n * r.obs_dim : 0);
   carve_memory(arena, resolved, r);
   return r;
 }

@@ -15,7 +15,7 @@ struct Rollout {
   size_t critics = 1;  // of each kind
 
   // [samples] rows of:
-  float* obs = nullptr;                     // [obs_dim] as the networks saw it, without its history
+  float* obs = nullptr;  // [obs_dim] as the networks saw it, without its history; with `replayed` as it came
   int16_t* points = nullptr;                // [eyes.points][3], of an actor whose eyes learn
   uint8_t* point_class = nullptr;           // [eyes.points], with classes
   uint8_t* point_color = nullptr;           // [eyes.points][3], with colours
@@ -30,6 +30,11 @@ struct Rollout {
   float *cost = nullptr, *cost_value = nullptr, *cost_advantage = nullptr, *cost_target = nullptr;
   float* discount = nullptr;  // 0 where a path ended
   uint8_t* valid = nullptr;
+  // What goes into a replay memory, of a learner that has one (off_policy/): actions are those that the worlds were
+  // given, rewards have no values in them, and discounts are 0 only where nothing is worth anything any more.
+  bool replayed = false;
+  uint8_t* over = nullptr;     // the episode ended with this row
+  float* final_obs = nullptr;  // [obs_dim], where it ended and the discount is not 0
   float* log_std = nullptr;  // [action_dim] of the innovation, of the policy that acted; std_step apart
   size_t std_step = 0;       // 0: one for all rows
   // [critics]: what the actor climbs: clipped, and linear in the ratio (0 unless the algorithm splits its loss).

@@ -12,7 +12,8 @@
 //       row<&Values::shape, Shape::kEgg, Shape::kBox>(text_option("shape", "egg", "egg|box", "of the object")));
 //
 // kRows.specs is the table, kRows.read(options) a Values. A part of a list may be a list, over the struct or a
-// base of it. kRows.with<&Values::mass>(2) has another default; kRows.of<&Values::mass>() is the row itself.
+// base of it. kRows.with<&Values::mass>(2) has another default; kRows.of<&Values::mass>() is the row itself;
+// kRows.without<&Values::mass, &Values::shape>() is the list without these, whose read leaves those members empty.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -82,6 +83,12 @@ struct OptionMember<kMember, kWords...> {
 
 template <class... M>
 struct MemberList {};
+template <class... A, class... B>
+MemberList<A..., B...> operator+(MemberList<A...>, MemberList<B...>);
+template <class S, class... M>
+struct OptionRows;
+template <class S, class... Members>
+OptionRows<S, Members...> rows_over(MemberList<Members...>);
 
 // A table, and row by row the members of S that the values go to.
 template <class S, class... M>
@@ -120,11 +127,28 @@ struct OptionRows {
     out.specs[index_of<kMember>()].text = text;
     return out;
   }
+  // The list without the rows of these members.
+  template <auto... kGone>
+  constexpr auto without() const {
+    using Kept =
+        decltype((std::conditional_t<is_one_of<M, kGone...>(), MemberList<>, MemberList<M>>{} + ...));
+    static_assert(((index_of<kGone>() < sizeof...(M)) && ...));
+    decltype(rows_over<S>(Kept{})) out{};
+    constexpr bool kStays[] = {!is_one_of<M, kGone...>()...};
+    OptionSpec* to = out.specs;
+    for (size_t i = 0; i < sizeof...(M); ++i)
+      if (kStays[i]) *to++ = specs[i];
+    return out;
+  }
 
  private:
   struct Distinct : M::Tag... {};  // a member that stands twice: an error
   static_assert(sizeof(Distinct) > 0);
 
+  template <class One, auto... kOthers>
+  static consteval bool is_one_of() {
+    return (std::is_same_v<typename One::Tag, MemberTag<kOthers>> || ...);
+  }
   template <auto kMember>
   static consteval size_t index_of() {
     constexpr bool kIs[] = {std::is_same_v<typename M::Tag, MemberTag<kMember>>...};
@@ -144,11 +168,6 @@ consteval auto row(const OptionSpec& spec) {
   if (!Member::Value::fits(spec)) row_does_not_fit_its_member();
   return OptionRows<typename Member::Struct, Member>{{spec}};
 }
-
-template <class... A, class... B>
-MemberList<A..., B...> operator+(MemberList<A...>, MemberList<B...>);
-template <class S, class... Members>
-OptionRows<S, Members...> rows_over(MemberList<Members...>);
 
 // The lists behind each other, as one.
 template <class S, class... Lists>

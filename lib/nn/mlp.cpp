@@ -64,6 +64,10 @@ MlpScratch carve_mlp_scratch(Arena& arena, const MlpShape& shape, int32_t rows) 
   for (int32_t l = 0; l < shape.num_hidden; ++l)
     s.activation[l] = arena.make<float>(sz(rows) * sz(shape.hidden[l]));
   for (float*& d : s.delta) d = arena.make<float>(sz(rows) * sz(widest));
+  for (int32_t l = 0; shape.layer_norm && l < shape.num_hidden; ++l) {
+    s.normed[l] = arena.make<float>(sz(rows) * sz(shape.hidden[l]));
+    s.inverse[l] = arena.make<float>(sz(rows));
+  }
   s.packed = arena.make<float>(pack_floats(shape, rows));
   return s;
 }
@@ -86,6 +90,46 @@ void pick_columns(const float* x, int32_t rows, int32_t width, const int32_t* co
     for (int32_t i = 0; i < count; ++i) y[i] = x[columns[i]];
 }
 
+namespace {
+
+// Sums of a row by eight lanes, so that they do not wait for each other; in a fixed order.
+constexpr size_t kLanes = 8;
+template <class Term>
+float lane_sum(size_t n, Term&& term) {
+  float lane[kLanes] = {};
+  size_t j = 0;
+  for (; j + kLanes <= n; j += kLanes)
+    for (size_t k = 0; k < kLanes; ++k) lane[k] += term(j + k);
+  for (; j < n; ++j) lane[0] += term(j);
+  return ((lane[0] + lane[4]) + (lane[2] + lane[6])) + ((lane[1] + lane[5]) + (lane[3] + lane[7]));
+}
+
+// normed [rows][n] of z, and inverse [rows].
+void layer_norm(const float* z, int32_t rows, int32_t width, float* normed, float* inverse) {
+  const size_t n = sz(width);
+  const float share = 1 / static_cast<float>(width);
+  for (size_t i = 0; i < sz(rows); ++i, z += n, normed += n) {
+    const float mean = share * lane_sum(n, [&](size_t j) { return z[j]; });
+    const float variance = share * lane_sum(n, [&](size_t j) { return (z[j] - mean) * (z[j] - mean); });
+    const float scale = 1 / std::sqrt(variance + 1e-5f);
+    inverse[i] = scale;
+    for (size_t j = 0; j < n; ++j) normed[j] = (z[j] - mean) * scale;
+  }
+}
+
+// d(loss)/dz in the place of d(loss)/d(normed).
+void layer_norm_backward(const float* normed, const float* inverse, int32_t rows, int32_t width, float* d) {
+  const size_t n = sz(width);
+  const float share = 1 / static_cast<float>(width);
+  for (size_t i = 0; i < sz(rows); ++i, normed += n, d += n) {
+    const float mean = share * lane_sum(n, [&](size_t j) { return d[j]; });
+    const float along = share * lane_sum(n, [&](size_t j) { return d[j] * normed[j]; });
+    for (size_t j = 0; j < n; ++j) d[j] = inverse[i] * (d[j] - mean - normed[j] * along);
+  }
+}
+
+}  // namespace
+
 void mlp_forward(const MlpShape& shape, const float* params, const float* x, int32_t rows,
                  const MlpScratch& scratch, float* y) {
   const Kernels& kernel = kernels();
@@ -95,9 +139,15 @@ void mlp_forward(const MlpShape& shape, const float* params, const float* x, int
     float* z = last ? y : scratch.activation[l];
     GemmArgs g = times_weights(shape, l, params + shape.weight_offset(l), x, rows, z, scratch.packed);
     g.bias = params + shape.bias_offset(l);
-    g.activate = !last;
+    g.activate = !last && !shape.layer_norm;
     if (scratch.pack_columns > 0) g.pack_columns = scratch.pack_columns;
     kernel.gemm(g);
+    if (!last && shape.layer_norm) {
+      const size_t count = sz(rows) * sz(shape.hidden[l]);
+      layer_norm(z, rows, shape.hidden[l], scratch.normed[l], scratch.inverse[l]);
+      std::copy_n(scratch.normed[l], count, z);
+      kernel.activate(shape.activation, z, count);
+    }
     x = z;
   }
 }
@@ -145,20 +195,24 @@ void backward_from(const MlpShape& shape, int32_t l, const float* params, const 
   for (; l >= 0; --l) {
     const int32_t in = shape.layer_in(l), out = shape.layer_out(l);
     const float* h = l == 0 ? x : scratch.activation[l - 1];
-    kernel.column_sums(delta, rows, out, grad + shape.bias_offset(l));
-    GemmArgs g;  // dW = delta^T h
-    g.m = out, g.n = in, g.k = rows;
-    g.a = delta, g.a_row = 1, g.a_col = sz(out);
-    g.b = h, g.b_row = sz(in), g.b_col = 1;
-    g.c = grad + shape.weight_offset(l);
-    g.packed = scratch.packed;
-    kernel.gemm(g);
+    if (grad) {
+      kernel.column_sums(delta, rows, out, grad + shape.bias_offset(l));
+      GemmArgs g;  // dW = delta^T h
+      g.m = out, g.n = in, g.k = rows;
+      g.a = delta, g.a_row = 1, g.a_col = sz(out);
+      g.b = h, g.b_row = sz(in), g.b_col = 1;
+      g.c = grad + shape.weight_offset(l);
+      g.packed = scratch.packed;
+      kernel.gemm(g);
+    }
     if (l == 0) break;
     // next delta = delta W .* act'(h)
     GemmArgs d = times_layer(shape, l, params, delta, rows, 0, scratch.delta[l & 1], scratch.packed);
     d.slope_of = h;
     d.activation = shape.activation;
     kernel.gemm(d);
+    if (shape.layer_norm)
+      layer_norm_backward(scratch.normed[l - 1], scratch.inverse[l - 1], rows, shape.hidden[l - 1], d.c);
     delta = d.c;
   }
   if (dx) kernel.gemm(times_layer(shape, 0, params, delta, rows, first_input, dx, scratch.packed));
@@ -168,7 +222,7 @@ void backward_from(const MlpShape& shape, int32_t l, const float* params, const 
 
 void mlp_backward(const MlpShape& shape, const float* params, const float* x, int32_t rows,
                   const MlpScratch& scratch, const float* dy, float* grad, int32_t first_input, float* dx) {
-  if (rows == 0) std::fill_n(grad, shape.num_params(), 0.0f);
+  if (rows == 0 && grad) std::fill_n(grad, shape.num_params(), 0.0f);
   backward_from(shape, shape.num_hidden, params, x, rows, scratch, dy, grad, first_input, dx);
 }
 

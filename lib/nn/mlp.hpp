@@ -23,6 +23,10 @@ struct MlpShape {
   int32_t num_hidden = 0;
   int32_t hidden[kMaxHidden] = {};
   Activation activation = Activation::kTanh;
+  // Each hidden layer's sums z are normalised before the activation, (z - mean z) / sqrt(var z + 1e-5), a row by
+  // itself (Ba, Kiros and Hinton 2016), without a scale and a shift of their own. Not with cut_forward_scratch and
+  // mlp_tangent.
+  bool layer_norm = false;
 
   int32_t num_layers() const { return num_hidden + 1; }
   int32_t layer_in(int32_t l) const { return l == 0 ? in : hidden[l - 1]; }
@@ -50,6 +54,7 @@ double mlp_bound(const MlpShape& s, const Params& params, double bound) {
       widest = std::max(widest, bound * sum + std::abs(static_cast<double>(params[s.bias_offset(l) + i])));
     }
     most = std::max(most, widest);
+    if (s.layer_norm) widest = std::sqrt(static_cast<double>(rows));
     bound = s.activation == Activation::kTanh ? 1 : std::max(1.0, widest);
   }
   return most;
@@ -60,6 +65,8 @@ struct MlpScratch {
   int32_t rows = 0;
   float* activation[kMaxHidden + 1] = {};  // [rows][layer_out(l)], hidden layers after their activation
   float* delta[2] = {};                    // [rows][widest layer], ping and pong
+  float* normed[kMaxHidden] = {};          // with layer_norm: [rows][layer_out(l)] before the activation
+  float* inverse[kMaxHidden] = {};         // [rows] 1 / sqrt(var + 1e-5)
   int32_t pack_columns = 0;                // of a matrix product at a time; 0: as many as are fastest
   float* packed = nullptr;                 // panels of the matrix products
   float* picked = nullptr;                 // [rows][in], of a caller whose rows are wider than the network
@@ -75,7 +82,7 @@ void pick_columns(const float* x, int32_t rows, int32_t width, const int32_t* co
 void mlp_forward(const MlpShape& shape, const float* params, const float* x, int32_t rows,
                  const MlpScratch& scratch, float* y);
 
-// grad [num_params] is overwritten with d(loss)/d(params), given dy = d(loss)/dy [rows][out] of the last
+// grad [num_params] (null: not wanted) is overwritten with d(loss)/d(params), given dy = d(loss)/dy [rows][out] of the last
 // forward pass over the same x. Sums over rows are taken in a fixed order. dx [rows][in - first_input], null:
 // not wanted, becomes d(loss)/dx of the inputs from first_input on.
 void mlp_backward(const MlpShape& shape, const float* params, const float* x, int32_t rows,

@@ -102,9 +102,15 @@ void act_outputs(const PolicyView& v, float* y, int32_t rows, const float* noise
       log_std[j] = std::clamp(log_std[j], v.std_bounds[0], v.std_bounds[1]);
     for (float* to : {out.mean, out.action})
       if (to && to + i * dim != y) std::copy_n(y, dim, to + i * dim);
-    if (out.action)
-      kernels().add_noise(v.state_std ? log_std : v.log_std, noise ? noise + i * dim : nullptr, 1,
-                          v.action_dim(), out.limit, out.action + i * dim);
+    if (out.mean) squash(v.squash, out.mean + i * dim, dim);
+    if (!out.action) continue;
+    float* const action = out.action + i * dim;
+    const bool of_sample = v.squash == Squash::kSample;
+    if (!of_sample) squash(v.squash, action, dim);
+    kernels().add_noise(v.state_std ? log_std : v.log_std, noise ? noise + i * dim : nullptr, 1,
+                        v.action_dim(), of_sample ? std::numeric_limits<float>::infinity() : out.limit,
+                        action);
+    if (of_sample) squash(v.squash, action, dim);
   }
 }
 
@@ -205,6 +211,15 @@ void read_head(Reader& in, PolicyView& v) {
   if (v.actor.out % 2 != 0) bad("the network's outputs are not means and deviations");
   if (!(v.std_bounds[0] <= v.std_bounds[1] && v.std_bounds[0] >= -50 && v.std_bounds[1] <= 50))
     bad("the deviation's bounds are out of range");
+}
+
+void read_squash(Reader& in, PolicyView& v) {
+  in.need_section("SQSH");
+  const auto squash = in.value<int32_t>();
+  in.expect_end();
+  if (squash < 1 || squash > static_cast<int32_t>(Squash::kMean))
+    bad("how its actions are squashed is unknown");
+  v.squash = static_cast<Squash>(squash);
 }
 
 void write_memory(Writer& out, const PolicyView& v) {
@@ -487,12 +502,13 @@ void read_parts(const void* bytes, size_t size, PolicyParts& parts) {
   PolicyView& v = parts.v;
   Reader in(bytes, size, kWhat);
   const uint32_t version = in.begin_file(kPolicyMagic, kPolicyVersion);
-  in.need_whole_tags("METAARCHHEADEYESMEMOCOLSGRPSWGTSNORMEXMP");
+  in.need_whole_tags("METAARCHHEADEYESMEMOSQSHCOLSGRPSWGTSNORMEXMP");
   read_meta(in, v);
   read_arch(in, v.actor);
   if (version > 1) read_head(in, v);
   if (version == 4 || version == 5) read_eyes(in, v, version == 5);
   if (version == 7) read_memory(in, parts);
+  if (version == 8) read_squash(in, v);
   v.row_dim = v.entries();
   if (version == 3 || (version > 3 && in.find_section("COLS"))) read_columns(in, parts);
   if (version == 6) {
@@ -652,12 +668,13 @@ void write_policy(Writer& out, const PolicyView& view) {
     Vector<float> state(sz(view.state_dim()));
     act_example(view, obs.data(), cloud, action.data(), align_scratch(memory.data()), state.data());
   }
-  out.begin_file(kPolicyMagic, view.state_dim()  ? 7
-                               : view.num_groups ? 6
-                               : eyes.points     ? (eyes.color ? 5 : 4)
-                               : view.columns    ? 3
-                               : view.state_std  ? 2
-                                                 : 1);
+  out.begin_file(kPolicyMagic, view.squash != Squash::kNone ? 8
+                               : view.state_dim()           ? 7
+                               : view.num_groups            ? 6
+                               : eyes.points                ? (eyes.color ? 5 : 4)
+                               : view.columns               ? 3
+                               : view.state_std             ? 2
+                                                            : 1);
   out.begin_section("META");
   out.value(view.clip);
   out.value(view.action_repeat);
@@ -677,6 +694,11 @@ void write_policy(Writer& out, const PolicyView& view) {
     out.begin_section("HEAD");
     out.value(view.std_bounds[0]);
     out.value(view.std_bounds[1]);
+    out.end_section();
+  }
+  if (view.squash != Squash::kNone) {
+    out.begin_section("SQSH");
+    out.value(static_cast<int32_t>(view.squash));
     out.end_section();
   }
   if (eyes.points) write_eyes(out, view);

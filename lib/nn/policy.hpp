@@ -2,7 +2,7 @@
 // Serialised form: the policy.rdm file (base/bytes.hpp), magic "RDMPOLIC". Version 2 is written for a policy
 // whose deviation depends on the state, version 3 for one that sees a part of the observation alone, version
 // 4 for one that sees points, version 5 for one that sees their colours, version 6 for one in groups, version 7 for one
-// that has a memory: versions before do not know these.
+// that has a memory, version 8 for one whose actions are squashed: versions before do not know these.
 // Sections FLDS, the names of fields, GENR, the generation, and SEEN, what is usual in a row, came later and
 // are in files of each version: a reader finds sections by their tags, and passes over others.
 #pragma once
@@ -15,11 +15,12 @@
 #include "nn/novelty.hpp"
 #include "nn/obs_field.hpp"
 #include "nn/pointnet.hpp"
+#include "nn/squash.hpp"
 
 namespace rdm {
 
 inline constexpr char kPolicyMagic[8] = {'R', 'D', 'M', 'P', 'O', 'L', 'I', 'C'};
-inline constexpr uint32_t kPolicyVersion = 7;
+inline constexpr uint32_t kPolicyVersion = 8;
 inline constexpr int32_t kMaxHistory = 1024;
 
 // Everything that a policy file holds, as views of memory that somebody else owns.
@@ -45,6 +46,7 @@ struct PolicyView {
   const float* log_std = nullptr;      // [action_dim], null with state_std
   bool state_std = false;              // the network gives the log deviations
   float std_bounds[2] = {};            // lowest and highest of these
+  Squash squash = Squash::kNone;       // what makes actions of the outputs
   const float* shift = nullptr;        // [entries()] observation normaliser: clip((x - shift) scale, +-clip)
   const float* scale = nullptr;        // [entries()]
   float clip = 0;                      // 0: no normaliser

@@ -204,6 +204,17 @@ redman::Agent make_agent(const AgentSettings& settings, const redman::Pool& pool
   });
 }
 
+bool has_option(const std::string& algo, const char* wanted) {
+  const int32_t index = find_algo(algo);
+  for (int32_t i = 0; i < algo_at(index).num_options; ++i) {
+    rdm_option_spec spec{};
+    spec.struct_size = sizeof spec;
+    redman::check(rdm_algo_option_at(index, i, &spec));
+    if (same_name(spec.key, wanted)) return true;
+  }
+  return false;
+}
+
 std::string agent_option(const redman::Agent& agent, const std::string& algo, const char* wanted) {
   const int32_t count = algo_at(find_algo(algo)).num_options;
   for (int32_t i = 0; i < count; ++i) {

@@ -137,6 +137,7 @@ bool Trainer::wants_starts() const {
 }
 
 bool Trainer::wants_imitation() const {
+  if (!has_option(settings_.agent.algo, "imitation")) return false;
   return std::strtod(agent_option(agent_, settings_.agent.algo, "imitation").c_str(), nullptr) > 0;
 }
 
@@ -189,6 +190,7 @@ int64_t Trainer::steps_per_epoch() const {
 void Trainer::plan_schedule() {
   for (const auto& [key, value] : settings_.agent.options)
     if (same_name(key, "total_epochs")) return;
+  if (!has_option(settings_.agent.algo, "total_epochs")) return;
   const double epochs =
       std::ceil(static_cast<double>(settings_.steps) / static_cast<double>(steps_per_epoch()));
   const rdm_option option = {"total_epochs", nullptr, std::max(1.0, epochs)};
