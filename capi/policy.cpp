@@ -228,10 +228,15 @@ bool tensor_at(const PolicyView& v, int32_t i, PolicyTensor* out) {
                                      {"normalizer.clip", &v.clip, 1, 1}};
   const auto rest = static_cast<size_t>(i - 2 * s.num_layers());
   const size_t known = std::size(always) + (v.clip > 0 ? std::size(normalizer) : 0);
-  if (rest < std::size(always))
+  static constexpr float kSquash[] = {0, 1, 2};
+  if (v.squash != Squash::kNone && rest == known)
+    *out = {"action.squash", &kSquash[static_cast<int32_t>(v.squash)], 1, 1};
+  else if (rest < std::size(always))
     *out = always[rest];
   else if (rest < known)
     *out = normalizer[rest - std::size(always)];
+  else if (v.squash != Squash::kNone)
+    return false;
   else
     return v.state_dim() ? memory_tensor_at(v, static_cast<int32_t>(rest - known), out)
                          : eyes_tensor_at(v, static_cast<int32_t>(rest - known), out);

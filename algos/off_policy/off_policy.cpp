@@ -8,6 +8,9 @@
 namespace rdm {
 namespace {
 
+constexpr int64_t kMostDecisions = int64_t{1}
+                                   << 50;  // of a state that loads: times updates_per_step it is a number
+constexpr double kMostNorm = 1e9;  // of a gradient where none is set: squares of its entries are floats still
 constexpr uint32_t kDrawStream = 1 << 20;  // of minibatches, behind those of blocks
 
 }  // namespace
@@ -63,6 +66,7 @@ void OffPolicy::read_live() {
 void OffPolicy::take_horizon(const float* last_obs) {
   const Rollout& r = rollout();
   const size_t costs = count_of(r.num_costs);
+  before_ = decisions_;
   for (int32_t env = 0; env < r.num_envs; ++env) {
     for (int32_t t = 0; t < r.horizon; ++t) {
       const size_t at = r.row(t) + count_of(env);
@@ -88,8 +92,7 @@ void OffPolicy::begin_step() {
     return static_cast<int64_t>(options_.updates_per_step * static_cast<double>(decisions));
   };
   const bool ready = !explores_blindly() && replay_.rows() > 0;
-  left_ = ready ? steps_for(decisions_) - steps_for(due_) : 0;
-  due_ = decisions_;
+  left_ = ready ? steps_for(decisions_) - steps_for(before_) : 0;
 }
 
 Job OffPolicy::step_on() {
@@ -136,7 +139,7 @@ bool OffPolicy::advance(bool whole) {
     case Stage::kCritics: {
       const SharedOptions& o = resolved().shared;
       const double rate = o.critic_learning_rate == 0 ? o.learning_rate : o.critic_learning_rate;
-      critics_.step(net_, to, rate, o.max_grad_norm, options_.tau);
+      critics_.step(net_, to, rate, o.max_grad_norm > 0 ? o.max_grad_norm : kMostNorm, options_.tau);
       if (!last_group()) break;
       ++steps_;
       first_ = 0;
@@ -267,7 +270,8 @@ void OffPolicy::learn_part(int32_t rows) {
 void OffPolicy::step_actor() {
   Block& b = nets().block[Networks::kActor];
   const SharedOptions& o = resolved().shared;
-  const double norm = adam_step(b.adam, nets().params + b.offset, grad_, o.learning_rate, o.max_grad_norm);
+  const double most = o.max_grad_norm > 0 ? o.max_grad_norm : kMostNorm;
+  const double norm = adam_step(b.adam, nets().params + b.offset, grad_, o.learning_rate, most);
   skipped_ += !std::isfinite(norm);
   ++sums_.actor_steps;
   end_actor_step();
@@ -323,7 +327,7 @@ void OffPolicy::report(Learned& learned) const {
   learned.mean.loss =
       sums_.actor_steps ? sums_.policy_loss / static_cast<double>(sums_.actor_steps) : kNothing;
   learned.mean.reward_loss = sums_.steps ? sums_.reward_loss / steps : kNothing;
-  learned.mean.cost_loss = sums_.steps && critics_.pairs() > 1 ? sums_.cost_loss / steps : kNothing;
+  learned.mean.cost_loss = critics_.pairs() == 1 ? 0 : sums_.steps ? sums_.cost_loss / steps : kNothing;
 }
 
 double OffPolicy::mean_value(bool of_cost) const {
@@ -334,9 +338,8 @@ double OffPolicy::mean_value(bool of_cost) const {
 void OffPolicy::visit_state(StateIo& io) {
   Agent::visit_state(io);
   io.section("OFFP");
-  io.counter(decisions_);
-  io.counter(fed_);
-  io.counter(due_);
+  io.integer(decisions_, 0, kMostDecisions);
+  io.integer(fed_, 0, kMostDecisions);
   io.counter(steps_);
   io.counter(skipped_);
   io.stream(*draws_);

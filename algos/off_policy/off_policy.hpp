@@ -39,7 +39,7 @@ inline constexpr auto kOffPolicyRows = option_rows<OffPolicyOptions>(
         basic(integer_option("batch_rows", 256, 1, 1 << 20, "rows drawn for each gradient step"))),
     row<&OffPolicyOptions::updates_per_step>(
         basic(number_option("updates_per_step", 1, 0, 1000,
-                            "gradient steps per decision of one world; below 1 for many worlds", true))),
+                            "gradient steps per decision of one world; below 1 for many worlds"))),
     row<&OffPolicyOptions::start_steps>(basic(
         integer_option("start_steps", 1000, 0, 1 << 28,
                        "decisions in the memory before learning begins; until then actions are uniform"))),
@@ -173,7 +173,7 @@ class OffPolicy : public Agent {
   float *head_ = nullptr, *dhead_ = nullptr;  // [kPartRows][outputs of the actor]
   float *grad_ = nullptr, *part_ = nullptr;   // of the actor's block
   int64_t decisions_ = 0, fed_ = 0;           // that came into the memory: taken here, and of recordings
-  int64_t due_ = 0;                           // decisions that gradient steps were taken for
+  int64_t before_ = 0;                        // decisions_ before this horizon
   int64_t steps_ = 0;                         // gradient steps so far
   // Of the update that runs.
   Stage stage_ = Stage::kOver;

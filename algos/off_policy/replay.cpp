@@ -7,7 +7,8 @@
 namespace rdm {
 namespace {
 
-constexpr auto kMaxFloat = static_cast<double>(std::numeric_limits<float>::max());
+constexpr auto kMostOfRow = static_cast<double>(std::numeric_limits<float>::max());
+constexpr auto kMost = static_cast<double>(kMaxReplayed);
 
 }  // namespace
 
@@ -56,8 +57,9 @@ void Replay::push(int32_t env, const ReplayRow& row) {
   take(env);
   std::memcpy(obs_ + count_of(at) * obs_dim_, row.obs, bytes);
   std::copy_n(row.action, action_dim_, action_ + count_of(at) * action_dim_);
-  if (num_costs_) std::copy_n(row.cost, num_costs_, cost_ + count_of(at) * num_costs_);
-  reward_[at] = row.reward;
+  for (size_t k = 0; k < num_costs_; ++k)
+    cost_[count_of(at) * num_costs_ + k] = std::min(row.cost[k], kMaxReplayed);
+  reward_[at] = std::clamp(row.reward, -kMaxReplayed, kMaxReplayed);
   discount_[at] = row.discount;
   drawable_[at] = 1;
   ++rows_;
@@ -112,10 +114,10 @@ void Replay::visit(StateIo& io) {
     // A ring that is not full begins at its first place; the foretold row is the one behind.
     const auto n = static_cast<size_t>(std::min<int64_t>(rows + more, capacity_));
     io.flags(drawable_ + first, n);
-    io.numbers(obs_ + first * obs_dim_, n * obs_dim_, -kMaxFloat, kMaxFloat);
+    io.numbers(obs_ + first * obs_dim_, n * obs_dim_, -kMostOfRow, kMostOfRow);
     io.numbers(action_ + first * action_dim_, n * action_dim_, -1, 1);
-    io.numbers(reward_ + first, n, -kMaxFloat, kMaxFloat);
-    io.numbers(cost_ + first * num_costs_, n * num_costs_, -kMaxFloat, kMaxFloat);
+    io.numbers(reward_ + first, n, -kMost, kMost);
+    io.numbers(cost_ + first * num_costs_, n * num_costs_, 0, kMost);
     io.numbers(discount_ + first, n, 0, 1);
     head_[env] = static_cast<int32_t>(head);
     size_[env] = static_cast<int32_t>(size);

@@ -21,6 +21,9 @@ inline size_t count_of(int32_t n) {
   return static_cast<size_t>(n);
 }
 
+// Bound on the magnitudes of rewards and costs that are kept: targets of them stay finite.
+inline constexpr float kMaxReplayed = 1e12f;
+
 struct ReplayRow {
   const float* obs = nullptr;     // [obs_dim]
   const float* action = nullptr;  // [action_dim] within [-1, 1]

@@ -49,7 +49,10 @@ TEST_P(EveryAlgo, Learns) {
   }
   EXPECT_GT(changed, after.size() * 9 / 10);
   EXPECT_GT(e.kl, 0);
-  EXPECT_EQ(e.passes, 3);
+  if (s.off_policy())
+    EXPECT_GE(e.passes, 3);
+  else
+    EXPECT_EQ(e.passes, 3);
   EXPECT_GT(e.loss_reward_value, 0);
 }
 

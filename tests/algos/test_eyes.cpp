@@ -117,7 +117,7 @@ TEST_P(Eyes, AFrozenEncoderStaysAsItIs) {
   EXPECT_GT(moved, after.size() / 2);
 }
 
-INSTANTIATE_TEST_SUITE_P(List, Eyes, testing::Range(0, algo_count()),
+INSTANTIATE_TEST_SUITE_P(List, Eyes, testing::ValuesIn(on_policy_algos()),
                          [](const auto& info) { return std::string(algo_at(info.param).name); });
 
 TEST(Eyes, ABlindPolicyCannot) {

@@ -117,10 +117,13 @@ class Victim {
     s.config.cost_dim = 2;
     s.config.cost_limits = limits;
     s.config.max_steps = 20;
-    s.with("hidden", "3").with("horizon", "6").with("passes", "1").with("minibatches", "1");
-    s.with("noise_correlation", "0.3").with("lr_schedule", "kl").with("terminal_cost", "on");
+    s.with("hidden", "3").with("horizon", "6").with_known("passes", "1").with_known("minibatches", "1");
+    s.with("noise_correlation", "0.3").with_known("lr_schedule", "kl").with("terminal_cost", "on");
+    s.with_known("replay_rows", "20").with_known("batch_rows", "4").with_known("start_steps", "0");
     s.with("activation", std::strcmp(std_mode, "state") == 0 ? "elu" : "tanh");
-    s.with("normalize_reward", "on").with("normalize_cost", "on").with("std_mode", std_mode);
+    s.with_known("normalize_reward", "on")
+        .with_known("normalize_cost", "on")
+        .with_known("std_mode", std_mode);
     s.with("average", "0.5");
     if (algo_row(algo_find(algo)).costs == Costs::kOne) s.with("several_costs", "worst");
     return s;

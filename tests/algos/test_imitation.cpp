@@ -165,7 +165,7 @@ TEST(Clone, RefusalsChangeNothing) {
 }
 
 TEST(WarmEpochs, LeaveTheActorsBytes) {
-  for (int32_t i = 0; i < algo_count(); ++i) {
+  for (const int32_t i : on_policy_algos()) {
     AgentSetup s = setup(algo_at(i).name);
     s.with("warm_epochs", "2").with("lr_schedule", "kl").with("learning_rate", "1e-4");
     const AgentPtr a = s.make();
@@ -250,7 +250,7 @@ TEST(Imitation, GradientIsThatOfTheTerm) {
 
 TEST(Imitation, HoldsEveryAlgorithmNearTheRecording) {
   const Lesson lesson;
-  for (int32_t i = 0; i < algo_count(); ++i) {
+  for (const int32_t i : on_policy_algos()) {
     double error[2];
     for (const bool held : {false, true}) {
       AgentSetup s = setup(algo_at(i).name);

@@ -449,7 +449,7 @@ TEST(Memory, FisherProductsThroughSequencesAreThoseOfDifferences) {
 
 TEST(Memory, EveryAlgorithmLearnsThroughIt) {
   int learned = 0;
-  for (int32_t i = 0; i < algo_count(); ++i) {
+  for (const int32_t i : on_policy_algos()) {
     const char* algo = algo_at(i).name;
     SCOPED_TRACE(algo);
     for (const Kind* kind : {&kKinds[0], &kKinds[4], &kKinds[5]}) {
@@ -467,7 +467,7 @@ TEST(Memory, EveryAlgorithmLearnsThroughIt) {
       ++learned;
     }
   }
-  EXPECT_EQ(learned, 3 * algo_count());
+  EXPECT_EQ(learned, 3 * static_cast<int>(on_policy_algos().size()));
 }
 
 TEST(Memory, ActRecordAndUpdateTakeNoMemory) {

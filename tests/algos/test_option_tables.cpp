@@ -209,6 +209,7 @@ TEST(OptionTables, DefaultsAreNotThePeersDefects) {
   for (int32_t i = 0; i < algo_count(); ++i) {
     AgentSetup s(algo_at(i).name, 1, 1, 4);
     const Options o = read(s);
+    if (s.off_policy()) continue;  // they have neither
     EXPECT_TRUE(o.flag("learn_std"));
     EXPECT_STREQ(o.text("std_schedule"), "none");
     EXPECT_FALSE(o.knows("kl_mean_over_dims") && o.flag("kl_mean_over_dims"));

@@ -88,7 +88,7 @@ class EveryAlgoInSlices : public testing::TestWithParam<std::tuple<int, int>> {
     const char* algo = algo_at(std::get<0>(GetParam())).name;
     AgentSetup s = busy_setup(algo, "free", 40);
     s.with("average", "0").with("horizon", "20");
-    for (const auto& [key, text] : kVariants[std::get<1>(GetParam())].options) s.with(key, text);
+    for (const auto& [key, text] : kVariants[std::get<1>(GetParam())].options) s.with_known(key, text);
     if (std::strcmp(algo, "ipo") == 0) s.with("barrier", "exact");
     s.config.num_threads = threads;
     return s;

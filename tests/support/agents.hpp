@@ -37,6 +37,15 @@ struct AgentSetup {
     options.push_back({key, text, 0});
     return *this;
   }
+  bool knows(const char* key) const {
+    const AlgoInfo& info = algo_at(algo_find(config.algo));
+    for (int32_t i = 0; i < info.num_options; ++i)
+      if (same_name(info.options[i].key, key)) return true;
+    return false;
+  }
+  // Where the algorithm has such an option.
+  AgentSetup& with_known(const char* key, const char* text) { return knows(key) ? with(key, text) : *this; }
+  bool off_policy() const { return algo_row(algo_find(config.algo)).off_policy; }
   const AgentConfig& ready() {
     config.options = options.data();
     config.num_options = static_cast<int32_t>(options.size());
@@ -44,6 +53,20 @@ struct AgentSetup {
   }
   AgentPtr make() { return AgentPtr(Agent::create(ready())); }
 };
+
+// The algorithms that learn from what they just did: those of which encoders, memories, imitation and ranks are.
+inline std::vector<int32_t> on_policy_algos() {
+  std::vector<int32_t> list;
+  for (int32_t i = 0; i < algo_count(); ++i)
+    if (!algo_row(i).off_policy) list.push_back(i);
+  return list;
+}
+
+// A learner from a replay memory learns from the first epoch on, in a few steps of its own.
+inline void few_updates(AgentSetup& s) {
+  s.with_known("start_steps", "0").with_known("batch_rows", "16").with_known("updates_per_step", "0.05");
+  s.with_known("replay_rows", "1000");
+}
 
 // With most of what crosses rows and epochs switched on, and two costs with limits, the worst of which counts
 // where an algorithm takes one.
@@ -54,11 +77,18 @@ inline AgentSetup busy_setup(const char* algo, const char* std_mode, int32_t num
   s.config.max_steps = 30;
   s.config.seed = 11;
   s.config.cost_limits = limits;
-  s.with("hidden", "16,8").with("horizon", "12").with("passes", "3").with("minibatches", "2");
-  s.with("noise_correlation", "0.3").with("lr_schedule", "kl").with("learning_rate", "2e-3");
-  s.with("terminal_cost", "on").with("normalize_reward", "on").with("normalize_cost", "on");
+  s.with("hidden", "16,8").with("horizon", "12").with_known("passes", "3").with_known("minibatches", "2");
+  s.with("noise_correlation", "0.3").with_known("lr_schedule", "kl").with("learning_rate", "2e-3");
+  s.with("terminal_cost", "on").with_known("normalize_reward", "on").with_known("normalize_cost", "on");
   s.with("reward_factor", "0.5").with("average", "0.6");
-  s.with("std_mode", std_mode);
+  s.with_known("std_mode", std_mode);
+  // A ring that is full after three epochs, batches of two parts.
+  if (s.off_policy())
+    s.with("activation", "tanh")
+        .with("replay_rows", "1200")
+        .with("batch_rows", "300")
+        .with("start_steps", "40")
+        .with("updates_per_step", "0.01");
   if (algo_row(algo_find(algo)).costs == Costs::kOne) s.with("several_costs", "worst");
   return s;
 }

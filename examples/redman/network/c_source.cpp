@@ -205,7 +205,7 @@ std::vector<float> run_layers(const Network& network, const Layers& layers, cons
   else
     run_all(layers.actor, network.activation, x);
   x.resize(static_cast<size_t>(network.action_dim));
-  for (float& a : x) a = std::clamp(a, -1.0f, 1.0f);
+  for (float& a : x) a = std::clamp(network.find("action.squash") ? std::tanh(a) : a, -1.0f, 1.0f);
   return x;
 }
 
@@ -418,6 +418,9 @@ Call call_of(const Network& network) {
           act + "count, action)", act + "0, action)"};
 }
 
+bool squashes(const Network& network) {
+  return network.find("action.squash") != nullptr;
+}
 // The functions of one kind of activation, `name` in the place of "activation".
 std::string activation_text(const std::string& kind, bool eye) {
   const std::string text = std::string(kind == "relu"  ? kRelu
@@ -432,7 +435,7 @@ bool own_activation(const Network& network, const Layers& layers) {
 std::string activations_text(const Network& network, const Layers& layers) {
   const bool actor = layers.actor.size() > 1, eyes = own_activation(network, layers);
   std::string out;
-  if (network.memory.units || (actor && network.activation != "relu") ||
+  if (network.memory.units || squashes(network) || (actor && network.activation != "relu") ||
       (eyes && network.eyes.activation != "relu"))
     out += kTanh;
   if (actor) out += activation_text(network.activation, false);
@@ -720,6 +723,8 @@ CSource c_source(const redman::Policy& policy, const Network& network, const std
            {"ROWS", std::to_string(kTestRows)},
            {"TOLERANCE", literal(tolerance)},
            {"CHECKSUM", format("0x%08xu", tables.checksum())},
+           {"SQUASH_OPEN", squashes(network) ? "NAME_tanh(" : ""},
+           {"SQUASH_CLOSE", squashes(network) ? ")" : ""},
            {"LOWEST", held ? "NAME_low[i]" : "-1.0f"},
            {"HIGHEST", held ? "NAME_high[i]" : "1.0f"},
            {"NAME", name}})

@@ -221,7 +221,7 @@ inline constexpr const char* kHistory = R"(  for (i = 0; i < NAME_state_size; ++
 )";
 
 inline constexpr const char* kStateTail = R"(  for (i = 0; i < NAME_action_dim; ++i) {
-    const float a = LAST[i];
+    const float a = SQUASH_OPENLAST[i]SQUASH_CLOSE;
     action[i] = a < LOWEST ? LOWEST : a > HIGHEST ? HIGHEST : a;
     fault += action[i] - action[i];
   }
@@ -301,7 +301,7 @@ inline constexpr const char* kTake = R"(    front[i] = obs[i];
 )";
 
 inline constexpr const char* kActTail = R"(  for (i = 0; i < NAME_action_dim; ++i) {
-    const float a = LAST[i];
+    const float a = SQUASH_OPENLAST[i]SQUASH_CLOSE;
     action[i] = a < LOWEST ? LOWEST : a > HIGHEST ? HIGHEST : a;
     fault += action[i] - action[i];
   }

@@ -194,7 +194,7 @@ NamedTensor half(const NamedTensor& t, bool second) {
 
 // The last layer of a policy whose deviations depend on the state; returns the mean.
 std::string add_head(Graph& graph, const std::string& x, const NamedTensor& weight, const NamedTensor& bias,
-                     const NamedTensor& bounds) {
+                     const NamedTensor& bounds, const char* mean) {
   const auto part = [&](bool second, const char* out) {
     return graph.node("Gemm", {x, graph.constant(half(weight, second)), graph.constant(half(bias, second))},
                       out, {{"transB", 1}});
@@ -203,7 +203,7 @@ std::string add_head(Graph& graph, const std::string& x, const NamedTensor& weig
              {part(true, "log_std.free"), graph.constant<float>("log_std.low", {}, {bounds.values[0]}),
               graph.constant<float>("log_std.high", {}, {bounds.values[1]})},
              "log_std");
-  return part(false, "mean");
+  return part(false, mean);
 }
 
 // Rows [gate units, (gate + 1) units) of what is there for all three gates.
@@ -269,18 +269,21 @@ std::string onnx_bytes(const Network& network) {
   if (memory.size) graph.input("state", {kBatch, memory.size});
   if (memory.size && !memory.units) x = add_history(memory, graph, x);
   const NamedTensor *log_std = network.find("actor.log_std"), *bounds = network.find("actor.log_std_bounds");
+  const bool squash = network.find("action.squash") != nullptr;
   for (int32_t l = 0; l < network.num_layers; ++l) {
     const std::string layer = "actor." + std::to_string(l);
     const bool last = l + 1 == network.num_layers;
     if (last && memory.units) x = add_gru(network, graph, x);
     const NamedTensor &weight = *network.find(layer + ".weight"), &bias = *network.find(layer + ".bias");
+    const char* const mean = squash ? "mean.free" : "mean";
     if (last && bounds)
-      x = add_head(graph, x, weight, bias, *bounds);
+      x = add_head(graph, x, weight, bias, *bounds, mean);
     else
-      x = graph.node("Gemm", {x, graph.constant(weight), graph.constant(bias)}, last ? "mean" : layer,
+      x = graph.node("Gemm", {x, graph.constant(weight), graph.constant(bias)}, last ? mean : layer,
                      {{"transB", 1}});
     if (!last) x = graph.node(activation_operator(network.activation).c_str(), {x}, layer + ".out");
   }
+  if (squash) x = graph.node("Tanh", {x}, "mean");
   graph.node(
       "Clip",
       {x, graph.constant<float>("action.low", {}, {-1}), graph.constant<float>("action.high", {}, {1})},
