@@ -96,7 +96,8 @@ RDM_API rdm_result rdm_policy_novelty(const rdm_policy *p, const float *obs, int
  * "example.point_class". In a policy with a GRU there are "memory.input.weight" and ".bias" and
  * "memory.state.weight" and ".bias", rows of the gates r, z and n; the GRU stands before the last
  * layer. In one with a history "actor.0.weight" has further columns, for its state, and there is
- * "history.columns", which entries of a row it keeps of each decision. */
+ * "history.columns", which entries of a row it keeps of each decision. "action.squash" is there
+ * where actions are squashed: 1 tanh(mean + noise), 2 tanh(mean) + noise, then the clip. */
 RDM_API rdm_result rdm_policy_tensor_at(const rdm_policy *p, int32_t i, rdm_tensor *out);
 /* Copies the named tensor to out [count]; count must be rows * cols. NOT_FOUND, RANGE. */
 RDM_API rdm_result rdm_policy_get_tensor(const rdm_policy *p, const char *name, float *out,

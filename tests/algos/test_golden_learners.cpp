@@ -30,6 +30,16 @@ rdm_pool* make_pool(const char* task, int32_t envs) {
   return p;
 }
 
+bool has_option(const char* algo, const char* key) {
+  int32_t index = 0;
+  EXPECT_EQ(rdm_algo_find(algo, &index), RDM_OK);
+  rdm_option_spec spec{};
+  spec.struct_size = sizeof spec;
+  for (int32_t i = 0; rdm_algo_option_at(index, i, &spec) == RDM_OK; ++i)
+    if (std::string(spec.key) == key) return true;
+  return false;
+}
+
 uint64_t state_after_three_epochs(const char* algo, const char* task) {
   rdm_pool* p = make_pool(task, 16);
   rdm_agent_config c;
@@ -37,7 +47,9 @@ uint64_t state_after_three_epochs(const char* algo, const char* task) {
   EXPECT_EQ(rdm_agent_config_for_pool(&c, p), RDM_OK);
   c.algo = algo;
   c.seed = 11;
-  c.settings = "hidden=32,16\nhorizon=24\npasses=2\nminibatches=2";
+  c.settings = has_option(algo, "replay_rows") ? "hidden=32,16\nhorizon=24\nreplay_rows=900\nbatch_rows="
+                                                 "300\nstart_steps=100\nupdates_per_step=0.03"
+                                               : "hidden=32,16\nhorizon=24\npasses=2\nminibatches=2";
   rdm_agent* a = nullptr;
   EXPECT_EQ(rdm_agent_create(&a, &c), RDM_OK) << rdm_last_error();
   for (int epoch = 0; epoch < 3; ++epoch)

@@ -4614,7 +4614,8 @@ FUNCTIONS: dict[str, Function] = {
         "example.point_class". In a policy with a GRU there are "memory.input.weight" and ".bias" and
         "memory.state.weight" and ".bias", rows of the gates r, z and n; the GRU stands before the last
         layer. In one with a history "actor.0.weight" has further columns, for its state, and there is
-        "history.columns", which entries of a row it keeps of each decision.
+        "history.columns", which entries of a row it keeps of each decision. "action.squash" is there
+        where actions are squashed: 1 tanh(mean + noise), 2 tanh(mean) + noise, then the clip.
         """),
     "rdm_policy_get_tensor": Function(
         c_int32, {"p": c_void_p, "name": c_char_p, "out": c_void_p, "count": c_size_t},

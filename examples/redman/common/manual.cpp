@@ -339,23 +339,31 @@ std::string learner_defaults(int32_t index) {
                             table.markdown());
 }
 
-bool shared_by_all(const std::string& key) {
+bool replays(int32_t algo) {
+  return has_option(algo_options(algo), "replay_rows");
+}
+
+// By all algorithms of the kind of one: that learn from a replay memory, or that do not.
+bool shared_by_kind(const std::string& key, int32_t algo) {
   for (int32_t i = 0; i < rdm_algo_count(); ++i)
-    if (!has_option(algo_options(i), key)) return false;
+    if (replays(i) == replays(algo) && !has_option(algo_options(i), key)) return false;
   return true;
 }
 
 std::string algo_options_text(int32_t index) {
   std::vector<rdm_option_spec> own, shared;
-  for (const rdm_option_spec& o : algo_options(index)) (shared_by_all(o.key) ? shared : own).push_back(o);
+  for (const rdm_option_spec& o : algo_options(index))
+    (shared_by_kind(o.key, index) ? shared : own).push_back(o);
+  const char* const whose = replays(index) ? "options that all algorithms with a replay memory have"
+                                           : "options that all algorithms have";
   size_t rows;
   std::string text;
   if (!own.empty()) text = option_rows_text(own, &rows) + '\n';
   const std::string basic = options_where(
       shared, [](const auto& o) { return o.level == RDM_LEVEL_BASIC; }, &rows);
-  text += folded_away(format("%zu basic options that all algorithms have", rows), basic);
+  text += folded_away(format("%zu basic %s", rows, whose), basic);
   std::erase_if(shared, [](const auto& o) { return o.level == RDM_LEVEL_BASIC; });
-  return text + '\n' + options_by_level(shared, "options that all algorithms have");
+  return text + '\n' + options_by_level(shared, whose);
 }
 
 }  // namespace
