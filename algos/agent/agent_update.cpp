@@ -380,7 +380,8 @@ void Agent::fill_learned(double rate, Epoch& e) {
   e.loss_cost_value = learned_.mean.cost_loss;
   e.clip_fraction = learned_.mean.clipped;
   e.value_reward = mean_value(false);
-  if (resolved_.values_costs || (resolved_.off_policy() && num_limited() > 0)) e.value_cost = mean_value(true);
+  if (resolved_.values_costs || (resolved_.off_policy() && num_limited() > 0))
+    e.value_cost = mean_value(true);
 }
 
 }  // namespace rdm

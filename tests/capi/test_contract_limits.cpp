@@ -93,12 +93,17 @@ std::vector<std::string> safe_algos() {
   return names;
 }
 
+bool replays(const std::string& algo) {
+  return algo.starts_with("td3") || algo.starts_with("sac");
+}
+
 // The barrier's slope of IPO ends at barrier_max, 1: no more than the reward that each cost comes with here. RCPO learns
 // from what is left of that reward, all or nothing of it on either side of a multiplier of 1: a multiplier that comes from
 // below in small steps finds a policy that never tries anything else.
 std::string own_settings(const std::string& algo) {
   if (algo == "rcpo")
     return "multiplier_optimizer=sgd\nmultiplier_init=1\nmultiplier_lr=0.002\nmultiplier_gain=0.1\n";
+  if (replays(algo)) return "start_steps=800\nbatch_rows=32\nupdates_per_step=0.05\nmultiplier_window=10\n";
   return algo == "ipo" ? "barrier_max=5\n" : "";
 }
 
