@@ -666,7 +666,8 @@ void Collector::begin_estimate(const float* last_obs) {
 }
 
 bool Collector::estimate_on() {
-  if (!rollout_.replayed && column_ < (resolved_->values_costs ? resolved_->num_critics() * rollout_.num_costs : 0)) {
+  if (!rollout_.replayed &&
+      column_ < (resolved_->values_costs ? resolved_->num_critics() * rollout_.num_costs : 0)) {
     const SharedOptions& o = shared();
     estimate_advantage(rollout_, column_++,
                        {o.lambda, o.cost_lambda, o.standardize_reward_adv, o.standardize_cost_adv},

@@ -35,8 +35,8 @@ struct Rollout {
   bool replayed = false;
   uint8_t* over = nullptr;     // the episode ended with this row
   float* final_obs = nullptr;  // [obs_dim], where it ended and the discount is not 0
-  float* log_std = nullptr;  // [action_dim] of the innovation, of the policy that acted; std_step apart
-  size_t std_step = 0;       // 0: one for all rows
+  float* log_std = nullptr;    // [action_dim] of the innovation, of the policy that acted; std_step apart
+  size_t std_step = 0;         // 0: one for all rows
   // [critics]: what the actor climbs: clipped, and linear in the ratio (0 unless the algorithm splits its loss).
   float *gain = nullptr, *linear = nullptr;
   float *last_value = nullptr,

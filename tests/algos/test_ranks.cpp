@@ -92,7 +92,8 @@ TEST_P(EveryAlgoInRanks, AnotherNumberGoesOn) {
 }
 
 INSTANTIATE_TEST_SUITE_P(List, EveryAlgoInRanks,
-                         testing::Combine(testing::ValuesIn(on_policy_algos()), testing::Values("free", "state")),
+                         testing::Combine(testing::ValuesIn(on_policy_algos()),
+                                          testing::Values("free", "state")),
                          [](const auto& info) {
                            return std::string(algo_at(std::get<0>(info.param)).name) + "_" +
                                   std::get<1>(info.param);
