@@ -166,19 +166,6 @@ Lanes3 color_of(const Painter& painter, const Nearby& nearby, const Hits& hits, 
   return out;
 }
 
-void store(const Painter& painter, const Lanes3 (&sum)[kTileSide], float scale, int32_t x, int32_t y,
-           uint8_t* rgb) {
-  const int32_t width = painter.view.width, height = painter.view.height;
-  for (int32_t r = 0; r < kTileSide && y + r < height; ++r)
-    for (int32_t i = 0; i < kFloat4Lanes && x + i < width; ++i) {
-      uint8_t* out =
-          rgb + 3 * (static_cast<size_t>(y + r) * static_cast<size_t>(width) + static_cast<size_t>(x + i));
-      out[0] = to_fine_srgb(scale * sum[r].x[i]);
-      out[1] = to_fine_srgb(scale * sum[r].y[i]);
-      out[2] = to_fine_srgb(scale * sum[r].z[i]);
-    }
-}
-
 // Primitives that rays from the eye to the ball may meet once a level floor has mirrored them.
 int32_t list_mirrored(const Painter& painter, const Ball& ball, int32_t* out) {
   const Vec3 at{ball.x, ball.y, ball.z};
@@ -246,7 +233,7 @@ void paint_fine_tile(const Painter& painter, const IndexList& seen, int32_t x, i
     color_all(side, all_rays);
   }
   const float share = 1 / static_cast<float>(side);
-  store(painter, sum, share * share, x, y, rgb);
+  store_tile<to_fine_srgb>(painter, sum, share * share, x, y, rgb);
 }
 
 }  // namespace rdm

@@ -57,19 +57,6 @@ Lanes3 color_of(const Painter& painter, const Nearby& nearby, const Hits& hits, 
   return select(hit, mix(near_color, behind, fade), behind);
 }
 
-void store(const Painter& painter, const Lanes3 (&sum)[kTileSide], float scale, int32_t x, int32_t y,
-           uint8_t* rgb) {
-  const int32_t width = painter.view.width, height = painter.view.height;
-  for (int32_t r = 0; r < kTileSide && y + r < height; ++r)
-    for (int32_t i = 0; i < kFloat4Lanes && x + i < width; ++i) {
-      uint8_t* out =
-          rgb + 3 * (static_cast<size_t>(y + r) * static_cast<size_t>(width) + static_cast<size_t>(x + i));
-      out[0] = to_srgb(scale * sum[r].x[i]);
-      out[1] = to_srgb(scale * sum[r].y[i]);
-      out[2] = to_srgb(scale * sum[r].z[i]);
-    }
-}
-
 }  // namespace
 
 LightRays make_light_rays(int32_t samples_per_side, double spread) {
@@ -138,7 +125,7 @@ void paint_tile(const Painter& painter, const IndexList& seen, bool flat, int32_
   Lanes3 sum[kTileSide] = {};
   for (int k = 0; k < count; ++k)
     for (int r = 0; r < kTileSide; ++r) sum[r] = sum[r] + color_of(painter, nearby, hits[k], r, k, share);
-  store(painter, sum, share * share, x, y, rgb);
+  store_tile<to_srgb>(painter, sum, share * share, x, y, rgb);
 }
 
 }  // namespace rdm

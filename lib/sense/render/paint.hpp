@@ -31,4 +31,19 @@ struct Painter {
 // of it but planes can be: where no shadow falls either, one sample does for all.
 void paint_tile(const Painter& painter, const IndexList& seen, bool flat, int32_t x, int32_t y, uint8_t* rgb);
 
+// Writes a tile's sums of linear light, times scale, as the bytes that `encode` makes of a channel.
+template <uint8_t (*encode)(float)>
+void store_tile(const Painter& painter, const Lanes3 (&sum)[kTileSide], float scale, int32_t x, int32_t y,
+                uint8_t* rgb) {
+  const int32_t width = painter.view.width, height = painter.view.height;
+  for (int32_t r = 0; r < kTileSide && y + r < height; ++r)
+    for (int32_t i = 0; i < kFloat4Lanes && x + i < width; ++i) {
+      uint8_t* out =
+          rgb + 3 * (static_cast<size_t>(y + r) * static_cast<size_t>(width) + static_cast<size_t>(x + i));
+      out[0] = encode(scale * sum[r].x[i]);
+      out[1] = encode(scale * sum[r].y[i]);
+      out[2] = encode(scale * sum[r].z[i]);
+    }
+}
+
 }  // namespace rdm
