@@ -344,6 +344,13 @@ rdm_result rdm_pool_step_masked(rdm_pool* p, const uint8_t* mask) {
   });
 }
 
+rdm_result rdm_pool_set_limit(rdm_pool* p, int32_t env, double limit) {
+  return call_on(p, [&] {
+    if (env != -1) need_index(env, p->pool->config().num_envs, "env");
+    p->pool->set_limit(env, limit);
+  });
+}
+
 rdm_result rdm_pool_baseline(rdm_pool* p, int32_t kind) {
   return call_on(p, [&] {
     if (kind < RDM_BASELINE_ZERO || kind > RDM_BASELINE_RANDOM)

@@ -36,9 +36,10 @@ void BudgetTask::write(void* state, const State& s) const {
 void BudgetTask::check_state(const void* state) const {
   inner().check_state(state);
   const State s = read(state);
-  const double low = draws_limit() ? budget_.range.low : budget_.limit;
-  const double high = draws_limit() ? budget_.range.high : budget_.limit;
-  if (!(s.limit >= 0 && s.limit <= high) || (s.limit != 0 && s.limit < low))
+  const double low = budget_.ranged() ? budget_.range.low : budget_.limit;
+  const double high = budget_.ranged() ? budget_.range.high : budget_.limit;
+  const bool given = s.limit == 0 || s.limit == budget_.limit;  // 0: before the first episode
+  if (!given && !(s.limit >= low && s.limit <= high))
     fail(Code::kFormat, "state: the limit of a budget is %g, which is outside [%g, %g]", s.limit, low, high);
   if (!(std::abs(s.left) <= kMostLeft)) fail(Code::kFormat, "state: what is left of a budget is not finite");
 }
@@ -74,15 +75,32 @@ void BudgetTask::spend(void* state, Verdict* verdict) const {
 }
 
 void BudgetTask::show(const World&, const void* state, float* out) const {
-  const State s = read(state);
+  show_left(read(state), out);
+}
+
+void BudgetTask::show_left(const State& s, float* out) const {
   const double whole = scale_ * s.limit;
   out[0] = static_cast<float>(whole > 0 ? s.left / whole : s.left < 0 ? -1 : 0);
   if (budget_.ranged()) out[1] = static_cast<float>(s.limit / budget_.range.high);
 }
 
 double BudgetTask::limit(const void* state) const {
-  if (!draws_limit()) return budget_.limit;
-  return state ? read(state).limit : budget_.range.middle();
+  if (state && budget_.ranged()) return read(state).limit;
+  return draws_limit() ? budget_.range.middle() : budget_.limit;
+}
+
+// What was spent so far is spent under the new limit too.
+void BudgetTask::set_limit(void* state, double limit, float* obs) const {
+  if (!budget_.ranged())
+    fail(Code::kUnsupported, "limit: option limit_range says between which limits an episode may change");
+  if (!(limit >= budget_.range.low && limit <= budget_.range.high))
+    fail(Code::kRange, "limit: %g is outside of limit_range, %g to %g", limit, budget_.range.low,
+         budget_.range.high);
+  State s = read(state);
+  s.left = std::clamp(s.left + scale_ * (limit - s.limit), -kMostLeft, kMostLeft);
+  s.limit = limit;
+  write(state, s);
+  show_left(s, obs + inner_dim());
 }
 
 void BudgetTask::reset(World& world, void* state, Stream& stream) const {

@@ -20,6 +20,7 @@ class BudgetTask final : public TaskAround {
   void judge_rows(const TaskRows& rows) const override;
   bool draws_limit() const override { return budget_.limit < 0; }
   double limit(const void* state) const override;
+  void set_limit(void* state, double limit, float* obs) const override;
 
  protected:
   void show(const World& world, const void* state, float* out) const override;
@@ -34,6 +35,7 @@ class BudgetTask final : public TaskAround {
   void write(void* state, const State& s) const;
   void begin(void* state, Stream& stream) const;
   void spend(void* state, Verdict* verdict) const;
+  void show_left(const State& s, float* out) const;
 
   Budget budget_;
   size_t offset_ = 0;  // of State

@@ -92,6 +92,19 @@ void Pool::set_joints(int32_t env, const double* q, const double* qd) {
   if (!good) m.buffers.status[env] = kStatusDiverged;
 }
 
+void Pool::set_limit(int32_t env, double limit) {
+  Impl& m = *impl_;
+  const int32_t first = env < 0 ? 0 : env, last = env < 0 ? m.config.num_envs : env + 1;
+  for (int32_t i = first; i < last; ++i) {
+    const Phase phase = m.slots[i].episode.phase;
+    if (phase != Phase::kRunning)
+      fail(Code::kState, "limit: world %d %s", i,
+           phase == Phase::kNew ? "was not reset yet" : "has ended its episode; reset it first");
+  }
+  // only the first one can fail: all have the same range
+  for (int32_t i = first; i < last; ++i) m.task->set_limit(m.slots[i].task_state, limit, m.obs(i));
+}
+
 void Pool::baseline(Baseline kind) {
   const FpMode mode;
   Impl& m = *impl_;

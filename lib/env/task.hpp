@@ -132,6 +132,12 @@ class Task {
   // such draws the limit of all episodes, -1: that of the costs' table.
   virtual bool draws_limit() const { return false; }
   virtual double limit(const void*) const { return -1; }
+  // Gives the episode of a world's state another limit in its middle, and shows it in its row of observations.
+  // Error(kUnsupported) for a task that does not show limits, Error(kRange) for one that it may not have.
+  virtual void set_limit(void*, double, float*) const {
+    fail(Code::kUnsupported,
+         "limit: these worlds do not observe one; option limit_range makes them, with budget");
+  }
   // Entry of the action that drives a joint of the scene; -1: none, or nobody knows.
   virtual int32_t action_of(int32_t) const { return -1; }
 };

@@ -59,6 +59,9 @@ class TaskAround : public Task {
   const DynamicsDraws* draws() const override { return inner_.draws(); }
   bool draws_limit() const override { return inner_.draws_limit(); }
   double limit(const void* state) const override { return inner_.limit(state); }
+  void set_limit(void* state, double limit, float* obs) const override {
+    inner_.set_limit(state, limit, obs);
+  }
   int32_t action_of(int32_t joint) const override { return inner_.action_of(joint); }
 
  protected:
@@ -70,6 +73,7 @@ class TaskAround : public Task {
   virtual void show(const World& world, const void* state, float* out) const = 0;
   const Task& inner() const { return inner_; }
   FieldTable& own_fields() { return fields_; }
+  int32_t inner_dim() const { return inner_dim_; }
 
  private:
   const Task& inner_;

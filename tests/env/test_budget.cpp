@@ -124,6 +124,50 @@ TEST(Budget, TheTasksLimitIsTheDefault) {
   EXPECT_EQ(p->limit(0), 3);
 }
 
+// What was spent stays spent; the next episode begins with a limit of its own.
+TEST(Budget, ALimitChangesInTheMiddleOfAnEpisode) {
+  TestPool p("toy_push", 2, {}, config("limit_range=2..8\nlimit=4\nbudget=saute"));
+  const auto pushed = [&] {  // one step that costs and one that does not, forth and back
+    for (const float a : {0.51f, -0.51f}) {
+      for (int32_t env = 0; env < 2; ++env) p.action(env)[0] = a, p.action(env)[1] = 0.5f;
+      p->step(nullptr);
+    }
+  };
+  EXPECT_THROW(p->set_limit(-1, 4), Error);  // before the first reset
+  p->reset(nullptr, nullptr);
+  pushed();
+  const std::vector<float> row(p.obs(1), p.obs(1) + p->obs_dim());
+  const uint64_t other = p->hash(0);
+  p->set_limit(1, 8);
+  EXPECT_EQ(p->hash(0), other);
+  EXPECT_EQ(p->limit(0), 4);
+  EXPECT_EQ(p->limit(1), 8);
+  EXPECT_EQ(p.obs(1)[kLeft], number(7.0 / 8));
+  EXPECT_EQ(p.obs(1)[kLimit], 1);
+  EXPECT_TRUE(std::equal(row.begin(), row.begin() + kToyObs, p.obs(1)));
+  pushed();
+  EXPECT_EQ(p.obs(0)[kLeft], number(2.0 / 4));
+  EXPECT_EQ(p.obs(1)[kLeft], number(6.0 / 8));
+  p->set_limit(-1, 2);
+  EXPECT_EQ(p.obs(0)[kLeft], 0);
+  pushed();  // and now it is overspent
+  for (int32_t env = 0; env < 2; ++env) EXPECT_EQ(p.rows().reward[static_cast<size_t>(env)], -1);
+  for (const double wrong : {1.9, 8.1, std::nan("")}) EXPECT_THROW(p->set_limit(0, wrong), Error);
+  EXPECT_EQ(p->limit(0), 2);
+
+  TestPool again("toy_push", 2, {}, config("limit_range=2..8\nlimit=4\nbudget=saute"));
+  again->copy(-1, *p, 1);  // a saved state has it
+  EXPECT_EQ(again->limit(0), 2);
+  for (int k = 0; k < 2; ++k) pushed();  // its 10 steps are over
+  EXPECT_EQ(p->limit(0), 4);
+
+  TestPool fixed("toy_push", 1, {}, config("budget=show")), none("toy_push", 1, {}, config(nullptr));
+  for (TestPool* q : {&fixed, &none}) {
+    (*q)->reset(nullptr, nullptr);
+    EXPECT_THROW((*q)->set_limit(0, 3), Error);
+  }
+}
+
 TEST(Budget, ALimitIsDrawnAtEachResetAndShown) {
   constexpr int kEnvs = 200;
   TestPool p("toy_push", kEnvs, {}, config("limit_range=5..40"));

@@ -47,6 +47,15 @@ class Budget(unittest.TestCase):
         at.reset()
         np.testing.assert_array_equal(at.obs[:, -1], np.float32(0.75))
         self.assertEqual(policy.act(at.obs).shape[0], 2)
+        at.set_limit(2, env=1)
+        np.testing.assert_array_equal(at.obs[:, -1], np.float32([0.75, 1]))
+        for limit, error, words in ((2.5, redman.RangeError, "limit_range, 1 to 2"), (float("nan"), redman.RangeError, "nan")):
+            with self.assertRaisesRegex(error, words):
+                at.set_limit(limit)
+        with redman.Pool("ball_run") as plain:
+            plain.reset()
+            with self.assertRaisesRegex(redman.UnsupportedError, "limit_range"):
+                plain.set_limit(3)
         with self.assertRaisesRegex(redman.ArgumentError, "limit"):
             redman.Pool("ball_run", options={"limit": 1.5})
 

@@ -276,6 +276,26 @@ TEST(ViewSession, ChangesActorsAndOptionsOrNothing) {
   EXPECT_TRUE(head_of(session.frame(0))["shield"]);
 }
 
+TEST(ViewSession, SetsTheLimitOfThisEpisodeAndTheNext) {
+  ViewSettings s = settings_of("ball_run", 2);
+  s.pool.options.emplace_back("limit_range", "5..40");
+  s.pool.options.emplace_back("max_steps", "3");
+  Session session(s);
+  EXPECT_EQ(session.scene()["limit_range"], (Json{5.0, 40.0}));
+  session.step();
+  done(session, {{"do", "limit"}, {"value", 10}});
+  EXPECT_EQ(head_of(session.frame(0))["limit"], 10);
+  EXPECT_THROW(done(session, {{"do", "limit"}, {"value", 41}}), Failure);
+  for (int k = 0; k < 2; ++k) session.step();
+  EXPECT_THROW(done(session, {{"do", "limit"}, {"value", 20}}), Usage);  // it is over
+  session.step();
+  EXPECT_EQ(head_of(session.frame(0))["limit"], 10);
+  Session plain(settings_of("ball_run", 1));
+  EXPECT_TRUE(plain.scene()["limit_range"].is_null());
+  EXPECT_FALSE(head_of(plain.frame(0)).contains("limit"));
+  EXPECT_THROW(done(plain, {{"do", "limit"}, {"value", 10}}), Usage);
+}
+
 TEST(ViewSession, LivesOnWhateverIsAskedFor) {
   Session session(settings_of("ball_run", 2));
   const std::vector<Document> values = {
@@ -291,7 +311,7 @@ TEST(ViewSession, LivesOnWhateverIsAskedFor) {
   };
   for (const char* what :
        {"play", "step", "seek", "reset", "speed", "stops", "act", "shield", "hand", "action", "watch",
-        "contacts", "grab", "release", "set", "picture", "hash", "nonsense"})
+        "contacts", "grab", "release", "set", "limit", "picture", "hash", "nonsense"})
     for (int n = 0; n < 60; ++n) {
       Document asked = {{"do", what}};
       for (size_t k = below(6); k > 0; --k) asked[keys[below(keys.size())]] = values[below(values.size())];

@@ -552,6 +552,14 @@ class Pool(Hinted):
                                                 *(None if row is None else row.ctypes.data for row in rows),
                                                 self.spec.num_joints))
 
+    def set_limit(self, limit: float, env: int = -1) -> None:
+        """Gives the episode that runs in a world, -1: in every world, another cost limit, between the ends of option limit_range.
+
+        What is left of the budget changes by as much, and obs shows both. The next episode draws its limit, or has that of
+        option limit."""
+        with self._lock:
+            self._check(lib.rdm_pool_set_limit(self._p, int32(env, "env"), float(limit)))
+
     def raycast(self, env: int, origin: Sequence[float], direction: Sequence[float],
                 range: float = math.inf) -> Optional[_abi.RayHit]:
         """The nearest shape that a ray hits within `range` m, with distance, point and normal; None if there is none."""

@@ -145,6 +145,14 @@ Json Session::command(const Document& asked) {
     PoolSettings next = settings_.pool;
     apply_sets({text_at(asked, "key", 64) + '=' + text_at(asked, "value", 256)}, next, nullptr);
     open(next, who_, shield_);
+  } else if (what == "limit") {
+    if (limit_range_[0] < 0)
+      throw Usage("limit: these worlds do not observe one; begin with --set limit_range=5..40, for example");
+    const double limit = number_at(asked, "value", limit_range_[0], limit_range_[1]);
+    for (const uint8_t over : history_.at(at_).rows.ended)
+      if (over) throw Usage("limit: an episode is over; step once more, or reset");
+    limit_ = limit;
+    keep_limit();
   } else if (what == "record") {
     if (!on()) return end_take();
     begin_take();
@@ -208,6 +216,7 @@ Json Session::scene() const {
           {"actions", actions},
           {"initial", own_},
           {"options", options},
+          {"limit_range", limit_range_[0] < 0 ? Json() : Json(limit_range_)},
           {"actors", actors_},
           {"record", settings_.record}};
 }
@@ -261,6 +270,8 @@ std::string Session::frame(int64_t since) const {
                {"sum", numbers_json(r.episode_cost.data() + watched() * costs, costs)},
                {"action", by_hand_ ? numbers_json(own_.data(), width)
                                    : numbers_json(r.action.data() + watched() * width, width)}};
+  if (limit_range_[0] >= 0)  // the last entry of a row is the share of the largest one
+    head["limit"] = limit_range_[1] * static_cast<double>(pool_->obs()[watched()][pool_->obs().width() - 1]);
   // moments that were not shown: return and sums of costs of the watched world
   Json rows = Json::array();
   since = std::max({since, history_.first() - 1, at_ - kMostRows});

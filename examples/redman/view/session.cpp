@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <cstring>
 #include <filesystem>
 
 #include "common/names.hpp"
@@ -20,6 +22,19 @@ std::vector<T> copied(const redman::View<T>& view) {
 template <class T>
 std::vector<T> copied(const redman::Rows<T>& rows, size_t count) {
   return {rows.data(), rows.data() + count * rows.width()};
+}
+
+// Option limit_range of a pool; -1, -1 without.
+std::array<double, 2> limit_range_of(const redman::Pool& pool) {
+  const char* key = nullptr;
+  char text[RDM_TEXT_SIZE];
+  for (int32_t i = 0; rdm_pool_setting_at(pool.get(), i, &key, text) == RDM_OK; ++i) {
+    if (std::strcmp(key, "limit_range") != 0) continue;
+    const char* const dots = std::strstr(text, "..");
+    const double low = std::strtod(text, nullptr), high = dots ? std::strtod(dots + 2, nullptr) : low;
+    return {low, high};
+  }
+  return {-1, -1};
 }
 
 }  // namespace
@@ -87,6 +102,8 @@ void Session::open(const PoolSettings& wanted, const std::string& who, bool shie
   own_ = pool_->initial_mean();
   by_hand_ = false;
   grab_.reset();
+  limit_range_ = limit_range_of(*pool_);
+  limit_.reset();
   lead_.emplace(wanted);
   history_.clear();
   ++scene_number_;
@@ -132,8 +149,13 @@ void Session::seek(int64_t moment) {
   ++changes_;
 }
 
+void Session::keep_limit() {
+  if (limit_) as_usage([&] { redman::check(rdm_pool_set_limit(pool_->get(), -1, *limit_)); });
+}
+
 void Session::begin_next(const std::vector<uint8_t>& ended) {
   pool_->reset(nullptr, ended.data());
+  keep_limit();
   actor_->restart(ended.data());
   if (ended[watched()]) own_ = pool_->initial_mean();
 }
@@ -143,6 +165,7 @@ void Session::reset(const uint64_t* seed) {
   std::vector<uint64_t> seeds;
   for (size_t i = 0; seed && i < pool_->num_envs(); ++i) seeds.push_back(*seed + i);
   pool_->reset(seed ? seeds.data() : nullptr);
+  keep_limit();
   actor_->restart();
   own_ = pool_->initial_mean();
   grab_.reset();

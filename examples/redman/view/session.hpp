@@ -2,6 +2,7 @@
 //
 // What nobody touches goes as it goes without a window: the same states at the same steps as `redman rollout` has.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -69,6 +70,7 @@ class Session : public Viewed {
   void set_actor(const std::string& who, bool shield);
   void remember();
   void reset(const uint64_t* seed);
+  void keep_limit();
   void seek(int64_t moment);
   void leave_past();
   void take_over(bool on);
@@ -88,6 +90,9 @@ class Session : public Viewed {
   std::string who_;
   bool shield_ = false;
   std::vector<double> limits_;
+  std::array<double, 2> limit_range_ = {-1,
+                                        -1};  // between which a person sets the limit; below 0: there is none
+  std::optional<double> limit_;               // that a person set, for the next episodes too
   std::vector<std::string> actors_;
   Playback looks_;               // what the shapes look like
   std::vector<int32_t> moving_;  // shapes

@@ -5,7 +5,7 @@ const redman = window.redman = {};
 (() => {
   const $ = id => document.getElementById(id);
   let world = null, view = null, model = null, frame = null, extent = 1, contactPeak = 1e-6, mine = 0;
-  let newest = null, asked = 0, errorTimer = 0, curvesAt = 0;
+  let newest = null, asked = 0, errorTimer = 0, curvesAt = 0, limitAt = 0;
   const waiting = new Map(), times = [];
   const contacts = { xyz: new Float32Array(3 * 128), force: new Float32Array(3 * 128), unit: 1, end: [0], most: 128 };
   const curve = { at: [], ret: [], sums: [], watched: 0 };
@@ -94,6 +94,8 @@ const redman = window.redman = {};
     for (const id of ['again', 'picture', 'take', 'shield', 'actors', 'stops-box', 'options-card']) $(id).hidden = !!world.fed;
     $('mouse').querySelector('[value=lead]').disabled = !!world.fed;  // what an action does is tried in copies of worlds of this program
     if (world.fed) $('mouse').value = 'pull';
+    $('limit-box').hidden = !world.limit_range;
+    if (world.limit_range) [$('limit').min, $('limit').max] = world.limit_range;
     options();
     look(!first ? looking : world.worlds > 1 ? 'all' : /^(hand_over|catch)/.test(world.task) ? 'close' : 'front');
     opened(true);
@@ -204,6 +206,11 @@ const redman = window.redman = {};
     $('reward').textContent = number(frame.reward[w]);
     $('episode').textContent = `step ${frame.step[w]} of ${world.steps} · ${(frame.step[w] * world.dt).toFixed(2)} s`;
     $('rate').textContent = frame.plays && times.length > 5 ? (1000 * (times.length - 1) / (times[times.length - 1] - times[0])).toFixed(0) : '\u2013';
+    if (frame.limit !== undefined) {
+      world.costs[0].limit = frame.limit;
+      $('limit-text').textContent = number(frame.limit);
+      if (performance.now() - limitAt > 400) $('limit').value = frame.limit;  // else it lags behind the slider
+    }
     showCosts($('costs'), world.costs, frame.sum);
     $('time').min = frame.first;
     $('time').max = frame.last;
@@ -297,6 +304,10 @@ const redman = window.redman = {};
       complain(told.file ? `wrote ${told.file}: ${told.episodes} episodes, ${told.steps} steps` : 'nothing was written: no episode came to its end' +
         (told.dropped ? ` without a pull, ${told.dropped} with one` : ''));
   }
+  $('limit').oninput = e => {
+    limitAt = performance.now();
+    request({ do: 'limit', value: Number(e.target.value) });
+  };
   $('play').onclick = () => play(!frame.plays);
   $('step').onclick = () => step(1);
   $('back').onclick = () => step(-1);
