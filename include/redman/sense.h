@@ -9,11 +9,11 @@ extern "C" {
 #endif
 
 /* ---- limits that the worlds of a pool see ---------------------------------------------------- */
-/* Gives the episode that runs in world env, -1: in every world, another cost limit, between the ends
- * of option limit_range. What is left of the budget changes by as much, what was spent stays spent,
- * and obs shows both (fields budget.left, budget.limit); other rows stay. The next episode draws its
- * limit, or has that of option `limit`. RANGE for a limit outside of limit_range, STATE where no
- * episode runs, UNSUPPORTED without limit_range; nothing changes then. No heap. */
+/* Gives the episode that runs in world env, -1: in every world, another cost limit, between the
+ * ends of option limit_range. What is left of the budget changes by as much, what was spent stays
+ * spent, and obs shows both (fields budget.left, budget.limit); other rows stay. The next episode
+ * draws its limit, or has that of option `limit`. RANGE for a limit outside of limit_range, STATE
+ * where no episode runs, UNSUPPORTED without limit_range; nothing changes then. No heap. */
 RDM_API rdm_result rdm_pool_set_limit(rdm_pool *p, int32_t env, double limit);
 
 /* ---- what the worlds of a pool see, beside rdm_buffers --------------------------------------- */

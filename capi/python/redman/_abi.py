@@ -5162,11 +5162,11 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_pool_set_limit": Function(
         c_int32, {"p": c_void_p, "env": c_int32, "limit": c_double},
         {}, True,
-        """Gives the episode that runs in world env, -1: in every world, another cost limit, between the ends
-        of option limit_range. What is left of the budget changes by as much, what was spent stays spent,
-        and obs shows both (fields budget.left, budget.limit); other rows stay. The next episode draws its
-        limit, or has that of option `limit`. RANGE for a limit outside of limit_range, STATE where no
-        episode runs, UNSUPPORTED without limit_range; nothing changes then. No heap.
+        """Gives the episode that runs in world env, -1: in every world, another cost limit, between the
+        ends of option limit_range. What is left of the budget changes by as much, what was spent stays
+        spent, and obs shows both (fields budget.left, budget.limit); other rows stay. The next episode
+        draws its limit, or has that of option `limit`. RANGE for a limit outside of limit_range, STATE
+        where no episode runs, UNSUPPORTED without limit_range; nothing changes then. No heap.
         """),
     "rdm_pool_get_sensors": Function(
         c_int32, {"p": c_void_p, "io": POINTER(rdm_sensors)},
