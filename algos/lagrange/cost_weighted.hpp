@@ -14,21 +14,16 @@ inline constexpr auto kSplitRows =
         "cost_loss", "combined", "combined|split",
         "combined: (A_r - l A_c)/(1 + l), clipped as one; split: cost part not clipped, as in Ray et al."))));
 
-// Base: an Agent. Rule: made from a ResolvedAgentConfig; step(costs, epoch) once per epoch
-// before the policy step, then weight(i) of limited cost i, mix(), split(), read_live(options), visit(io).
+// Base: an Agent. Rule: made from a ResolvedAgentConfig; step(costs, epoch) once per epoch before the policy step,
+// then weight(i) of limited cost i, mix(), split(), read_live(options), visit(io).
 template <class Base, class Rule>
-class CostWeighted : public Base {
+class WithRule : public Base {
  public:
-  explicit CostWeighted(ResolvedAgentConfig&& resolved)
-      : Base(std::move(resolved)), rule_(this->resolved()) {}
+  explicit WithRule(ResolvedAgentConfig&& resolved) : Base(std::move(resolved)), rule_(this->resolved()) {}
 
  protected:
-  void begin_epoch(const JudgedCosts& costs, int32_t epoch) override {
-    rule_.step(costs, epoch);
-    double weights[kMaxCosts];
-    for (int32_t i = 0; i < this->resolved().num_limited; ++i) weights[i] = rule_.weight(i);
-    combine_advantages(this->rollout(), weights, rule_.mix(), rule_.split());
-  }
+  void begin_epoch(const JudgedCosts& costs, int32_t epoch) override { rule_.step(costs, epoch); }
+  const Rule& rule() const { return rule_; }
   double cost_weight(int32_t i) const override { return rule_.weight(i); }
   void read_live() override {
     Base::read_live();
@@ -41,6 +36,22 @@ class CostWeighted : public Base {
 
  private:
   Rule rule_;
+};
+
+// The same where the policy climbs a combined advantage.
+template <class Base, class Rule>
+class CostWeighted : public WithRule<Base, Rule> {
+ public:
+  using WithRule<Base, Rule>::WithRule;
+
+ protected:
+  void begin_epoch(const JudgedCosts& costs, int32_t epoch) override {
+    WithRule<Base, Rule>::begin_epoch(costs, epoch);
+    const Rule& rule = this->rule();
+    double weights[kMaxCosts];
+    for (int32_t i = 0; i < this->resolved().num_limited; ++i) weights[i] = rule.weight(i);
+    combine_advantages(this->rollout(), weights, rule.mix(), rule.split());
+  }
 };
 
 }  // namespace rdm

@@ -21,6 +21,7 @@
 #pragma once
 #include "algos/agent/agent.hpp"
 #include "algos/core/option_tables.hpp"
+#include "algos/lagrange/cost_weighted.hpp"
 #include "algos/off_policy/q_critic.hpp"
 #include "algos/off_policy/replay.hpp"
 
@@ -188,25 +189,22 @@ class OffPolicy : public Agent {
 
 // Base: an OffPolicy. Rule: of lagrange/, that says what costs weigh.
 template <class Base, class Rule>
-class Weighed : public Base {
+class Weighed : public WithRule<Base, Rule> {
  public:
-  explicit Weighed(ResolvedAgentConfig&& resolved) : Base(std::move(resolved)), rule_(this->resolved()) {}
+  using WithRule<Base, Rule>::WithRule;
 
  protected:
-  void begin_epoch(const JudgedCosts& costs, int32_t epoch) override { rule_.step(costs, epoch); }
-  double cost_weight(int32_t i) const override { return rule_.weight(i); }
-  Mix mix() const override { return rule_.mix(); }
-  void read_live() override {
-    Base::read_live();
-    rule_.read_live(this->options());
-  }
-  void visit_state(StateIo& io) override {
-    Base::visit_state(io);
-    rule_.visit(io);
-  }
-
- private:
-  Rule rule_;
+  Mix mix() const override { return this->rule().mix(); }
 };
+
+// The row of one of them. T::kSquash: what bounds its actions; T::shared: options that its table leaves out.
+template <class T, class Rows>
+constexpr AlgoRow off_policy_row(const char* name, const char* summary, const Rows& rows, Costs costs) {
+  AlgoRow row = make_algo_row<T>(name, summary, rows, costs);
+  row.off_policy = true;
+  row.squash = T::kSquash;
+  row.shared = T::shared;
+  return row;
+}
 
 }  // namespace rdm

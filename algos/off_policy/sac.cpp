@@ -121,15 +121,6 @@ void Sac::visit_state(StateIo& io) {
 
 namespace {
 
-template <class T, class Rows>
-constexpr AlgoRow sac_row(const char* name, const char* summary, const Rows& rows, Costs costs) {
-  AlgoRow row = make_algo_row<T>(name, summary, rows, costs);
-  row.off_policy = true;
-  row.squash = Squash::kSample;
-  row.shared = Sac::shared;
-  return row;
-}
-
 struct SacLagOptions : SacOptions, LagrangeOptions, WindowOptions {};
 constexpr auto kSacLagRows = option_rows<SacLagOptions>(kSacRows, kLagrangeRows, kReplayWindowRows);
 struct SacPidOptions : SacOptions, PidRuleOptions, WindowOptions {};
@@ -137,13 +128,13 @@ constexpr auto kSacPidRows = option_rows<SacPidOptions>(kSacRows, kPidRows, kRep
 
 }  // namespace
 
-constinit const AlgoRow kSac = sac_row<Sac>(
+constinit const AlgoRow kSac = off_policy_row<Sac>(
     "sac", "Soft actor-critic from a replay memory (Haarnoja et al. 2018); costs are only recorded", kSacRows,
     Costs::kNone);
-constinit const AlgoRow kSacLag = sac_row<Weighed<Sac, Lagrange>>(
+constinit const AlgoRow kSacLag = off_policy_row<Weighed<Sac, Lagrange>>(
     "sac_lag", "SAC with pessimistic cost critics and a multiplier for each limit, by dual ascent",
     kSacLagRows, Costs::kAny);
-constinit const AlgoRow kSacPid = sac_row<Weighed<Sac, PidRule>>(
+constinit const AlgoRow kSacPid = off_policy_row<Weighed<Sac, PidRule>>(
     "sac_pid", "SAC with pessimistic cost critics and a PID-controlled multiplier for each limit",
     kSacPidRows, Costs::kAny);
 

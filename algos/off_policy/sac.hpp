@@ -36,6 +36,7 @@ class Sac : public OffPolicy {
  public:
   explicit Sac(ResolvedAgentConfig&& resolved) : OffPolicy(std::move(resolved)) {}
   void carve(Arena& arena) override;
+  static constexpr Squash kSquash = Squash::kSample;
   static SharedOptions shared(const Options& options);
   double temperature() const;
 

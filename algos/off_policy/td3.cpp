@@ -78,15 +78,6 @@ void Td3::visit_state(StateIo& io) {
 
 namespace {
 
-template <class T, class Rows>
-constexpr AlgoRow td3_row(const char* name, const char* summary, const Rows& rows, Costs costs) {
-  AlgoRow row = make_algo_row<T>(name, summary, rows, costs);
-  row.off_policy = true;
-  row.squash = Squash::kMean;
-  row.shared = Td3::shared;
-  return row;
-}
-
 struct Td3LagOptions : Td3Options, LagrangeOptions, WindowOptions {};
 constexpr auto kTd3LagRows = option_rows<Td3LagOptions>(kTd3Rows, kLagrangeRows, kReplayWindowRows);
 struct Td3PidOptions : Td3Options, PidRuleOptions, WindowOptions {};
@@ -94,14 +85,14 @@ constexpr auto kTd3PidRows = option_rows<Td3PidOptions>(kTd3Rows, kPidRows, kRep
 
 }  // namespace
 
-constinit const AlgoRow kTd3 = td3_row<Td3>(
+constinit const AlgoRow kTd3 = off_policy_row<Td3>(
     "td3",
     "Twin delayed policy gradient from a replay memory (Fujimoto et al. 2018); costs are only recorded",
     kTd3Rows, Costs::kNone);
-constinit const AlgoRow kTd3Lag = td3_row<Weighed<Td3, Lagrange>>(
+constinit const AlgoRow kTd3Lag = off_policy_row<Weighed<Td3, Lagrange>>(
     "td3_lag", "TD3 with pessimistic cost critics and a multiplier for each limit, by dual ascent",
     kTd3LagRows, Costs::kAny);
-constinit const AlgoRow kTd3Pid = td3_row<Weighed<Td3, PidRule>>(
+constinit const AlgoRow kTd3Pid = off_policy_row<Weighed<Td3, PidRule>>(
     "td3_pid", "TD3 with pessimistic cost critics and a PID-controlled multiplier for each limit",
     kTd3PidRows, Costs::kAny);
 

@@ -33,6 +33,7 @@ class Td3 : public OffPolicy {
  public:
   explicit Td3(ResolvedAgentConfig&& resolved) : OffPolicy(std::move(resolved)) {}
   void carve(Arena& arena) override;
+  static constexpr Squash kSquash = Squash::kMean;
   static SharedOptions shared(const Options& options);
 
  protected:

@@ -85,10 +85,6 @@ class MatrixGame final : public SampledTask<State, 2> {
 };
 
 constexpr CostSpec kCosts[] = {{"cost", "1 where both choose 1", 2.5}};
-constexpr CameraSpec kCameras[] = {
-    {"front", {0, -4, 2.5}, {0, 0, 0}, 0.8},
-    {"top", {0, -0.01, 5}, {0, 0, 0}, 0.8},
-};
 constexpr auto kDefaults = join_defaults(kKnownLearner, {{"hidden", ""},
                                                          {"horizon", "50"},
                                                          {"minibatches", "4"},
@@ -105,7 +101,7 @@ constexpr auto kDefaults = join_defaults(kKnownLearner, {{"hidden", ""},
 
 }  // namespace
 
-constinit const TaskInfo kMatrixGame = task_info<MatrixGame, kRows, kCosts, kCameras, kDefaults>(
+constinit const TaskInfo kMatrixGame = task_info<MatrixGame, kRows, kCosts, kSampledCameras, kDefaults>(
     "matrix_game", nullptr, "a game of two who observe half each and want the same; the optimum is known");
 
 }  // namespace rdm

@@ -83,10 +83,6 @@ class Recall final : public SampledTask<State> {
 };
 
 constexpr CostSpec kCosts[] = {{"cost", "1 for the choice +1", 0.6}};
-constexpr CameraSpec kCameras[] = {
-    {"front", {0, -4, 2.5}, {0, 0, 0}, 0.8},
-    {"top", {0, -0.01, 5}, {0, 0, 0}, 0.8},
-};
 constexpr auto kDefaults = join_defaults(kKnownLearner, {{"horizon", "80"},
                                                          {"minibatches", "8"},
                                                          {"passes", "5"},
@@ -104,7 +100,7 @@ constexpr auto kDefaults = join_defaults(kKnownLearner, {{"horizon", "80"},
 
 }  // namespace
 
-constinit const TaskInfo kRecall = task_info<Recall, kRows, kCosts, kCameras, kDefaults>(
+constinit const TaskInfo kRecall = task_info<Recall, kRows, kCosts, kSampledCameras, kDefaults>(
     "recall", nullptr, "a cue at the first step, a choice at the last: needs a memory; the optimum is known");
 
 }  // namespace rdm

@@ -48,4 +48,10 @@ class SampledTask : public PlanarTask {
   virtual void place(World& world, const State& state) const = 0;
 };
 
+// On bodies between -1 and 1.
+inline constexpr CameraSpec kSampledCameras[] = {
+    {"front", {0, -4, 2.5}, {0, 0, 0}, 0.8},
+    {"top", {0, -0.01, 5}, {0, 0, 0}, 0.8},
+};
+
 }  // namespace rdm

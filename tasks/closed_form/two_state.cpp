@@ -97,10 +97,6 @@ class TwoState final : public SampledTask<State> {
 };
 
 constexpr CostSpec kCosts[] = {{"cost", "0.2 for action 1 in state 0, 1 for action 1 in state 1", 2.5}};
-constexpr CameraSpec kCameras[] = {
-    {"front", {0, -4, 2.5}, {0, 0, 0}, 0.8},
-    {"top", {0, -0.01, 5}, {0, 0, 0}, 0.8},
-};
 constexpr auto kDefaults = join_defaults(kKnownLearner, {{"horizon", "256"},
                                                          {"minibatches", "16"},
                                                          {"passes", "5"},
@@ -116,7 +112,7 @@ constexpr auto kDefaults = join_defaults(kKnownLearner, {{"horizon", "256"},
 
 }  // namespace
 
-constinit const TaskInfo kTwoState = task_info<TwoState, kRows, kCosts, kCameras, kDefaults>(
+constinit const TaskInfo kTwoState = task_info<TwoState, kRows, kCosts, kSampledCameras, kDefaults>(
     "two_state", nullptr, "a constrained Markov decision process of two states; the optimum is known");
 
 }  // namespace rdm

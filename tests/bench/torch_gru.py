@@ -6,39 +6,17 @@
 An actor with tanh layers, torch.nn.GRU over chunks of --chunk steps and a linear layer, a critic with tanh layers, a clipped
 surrogate, Adam and clipped gradients, five passes. Prints samples times passes per second, the median of some updates.
 """
-import argparse
 import statistics
 import time
 
 import torch
 from torch import nn
 
-PASSES = 5
-
-
-def network(inputs, hidden, outputs):
-    layers = []
-    for width in hidden:
-        layers += [nn.Linear(inputs, width), nn.Tanh()]
-        inputs = width
-    return nn.Sequential(*layers, nn.Linear(inputs, outputs))
+from torch_parts import PASSES, network, read_flags
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--obs", type=int, default=398)
-    parser.add_argument("--act", type=int, default=40)
-    parser.add_argument("--hidden", default="64,64")
-    parser.add_argument("--units", type=int, default=64)
-    parser.add_argument("--chunk", type=int, default=16)
-    parser.add_argument("--samples", type=int, default=8192)
-    parser.add_argument("--minibatch", type=int, default=1024)
-    parser.add_argument("--threads", type=int, default=1)
-    parser.add_argument("--updates", type=int, default=5)
-    flags = parser.parse_args()
-    torch.set_num_threads(flags.threads)
-    torch.manual_seed(0)
-    hidden = [int(width) for width in flags.hidden.split(",")]
+    flags, hidden = read_flags(__doc__, units=64, chunk=16)
     trunk = nn.Sequential(*network(flags.obs, hidden, 1)[:-1])
     gru, head, critic = nn.GRU(hidden[-1], flags.units), nn.Linear(flags.units, flags.act), network(flags.obs, hidden, 1)
     log_std = nn.Parameter(torch.zeros(flags.act))

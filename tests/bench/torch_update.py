@@ -7,37 +7,17 @@ Actor, reward critic and cost critic with tanh layers, a clipped surrogate, Adam
 over the samples. Prints samples times passes per second, the median of some updates. Needs torch (Debian:
 python3-torch with libopenblas0-pthread; the reference BLAS is 30 times slower).
 """
-import argparse
 import statistics
 import time
 
 import torch
 from torch import nn
 
-PASSES = 5
-
-
-def network(inputs, hidden, outputs):
-    layers = []
-    for width in hidden:
-        layers += [nn.Linear(inputs, width), nn.Tanh()]
-        inputs = width
-    return nn.Sequential(*layers, nn.Linear(inputs, outputs))
+from torch_parts import PASSES, network, read_flags
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--obs", type=int, default=398)
-    parser.add_argument("--act", type=int, default=40)
-    parser.add_argument("--hidden", default="64,64")
-    parser.add_argument("--samples", type=int, default=8192)
-    parser.add_argument("--minibatch", type=int, default=1024)
-    parser.add_argument("--threads", type=int, default=1)
-    parser.add_argument("--updates", type=int, default=5)
-    flags = parser.parse_args()
-    torch.set_num_threads(flags.threads)
-    torch.manual_seed(0)
-    hidden = [int(width) for width in flags.hidden.split(",")]
+    flags, hidden = read_flags(__doc__)
     rows = flags.samples
 
     actor = network(flags.obs, hidden, flags.act)

@@ -1,7 +1,5 @@
 #include "data/mcap.hpp"
 
-#include <zlib.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -10,6 +8,7 @@
 #include "common/files.hpp"
 #include "common/json.hpp"
 #include "common/text.hpp"
+#include "record/zip.hpp"
 
 namespace tool {
 namespace {
@@ -39,7 +38,7 @@ enum Opcode : uint8_t {
 };
 
 uint32_t crc_of(const std::string& bytes, uint32_t before = 0) {
-  return static_cast<uint32_t>(crc32_z(before, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+  return checksum_of(before, bytes.data(), bytes.size());
 }
 
 // The fields of a record.

@@ -2,17 +2,12 @@
 
 #include <algorithm>
 
+#include "common/scatter.hpp"
+
 namespace tool {
 namespace {
 
 constexpr float kSlow = 0.9f, kSlowFresh = 0.43588989f;
-
-uint64_t scattered(uint64_t x) {
-  x += 0x9e3779b97f4a7c15u;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-  return x ^ (x >> 31);
-}
 
 }  // namespace
 

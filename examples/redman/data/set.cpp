@@ -1,10 +1,9 @@
 #include "data/set.hpp"
 
-#include <zlib.h>
-
 #include <algorithm>
 #include <cstring>
 #include <map>
+#include <optional>
 
 #include "common/files.hpp"
 #include "common/json.hpp"
@@ -28,7 +27,13 @@ template <class T>
 struct ColumnOf {
   const char* name;
   std::vector<T> DataEpisode::*rows;
-  size_t width;  // 0: one number a row
+  std::optional<size_t> width;  // none: one number a row, in an array of one dimension
+  size_t numbers() const { return width.value_or(1); }
+  ArrayShape shape(uint64_t count) const {
+    ArrayShape array{kArrayType<T>, {count}};
+    if (width) array.shape.push_back(*width);
+    return array;
+  }
 };
 
 // Calls f with each column of rows that the set has, in the order of the file.
@@ -37,16 +42,11 @@ void each_column(const Set& set, F&& f) {
   f(ColumnOf<float>{"obs", &DataEpisode::obs, set.obs_dim});
   f(ColumnOf<float>{"action", &DataEpisode::action, set.action_dim});
   if (set.labels) f(ColumnOf<float>{"label", &DataEpisode::label, set.action_dim});
-  f(ColumnOf<float>{"reward", &DataEpisode::reward, 0});
+  f(ColumnOf<float>{"reward", &DataEpisode::reward, {}});
   f(ColumnOf<float>{"cost", &DataEpisode::cost, set.cost_dim});
-  f(ColumnOf<uint8_t>{"terminated", &DataEpisode::terminated, 0});
-  f(ColumnOf<uint8_t>{"truncated", &DataEpisode::truncated, 0});
-  f(ColumnOf<uint8_t>{"success", &DataEpisode::success, 0});
-}
-
-template <class T>
-size_t numbers_in_a_row(const ColumnOf<T>& column) {
-  return std::strcmp(column.name, "cost") == 0 ? column.width : std::max<size_t>(column.width, 1);
+  f(ColumnOf<uint8_t>{"terminated", &DataEpisode::terminated, {}});
+  f(ColumnOf<uint8_t>{"truncated", &DataEpisode::truncated, {}});
+  f(ColumnOf<uint8_t>{"success", &DataEpisode::success, {}});
 }
 
 struct Fnv {
@@ -165,12 +165,10 @@ std::vector<size_t> episodes_of_rows(const ArrayIn& in, uint64_t rows, size_t* c
 template <class T>
 void read_rows(const ArrayIn& in, const ColumnOf<T>& column, const std::vector<size_t>& episode,
                DataSet& set) {
-  const size_t width = numbers_in_a_row(column), size = width * sizeof(T);
-  const ArrayShape s = in.shape(column.name);
-  const bool two = column.width > 0 || std::strcmp(column.name, "cost") == 0;
-  const bool fits = s.type == kArrayType<T> || (sizeof(T) == 1 && s.type == "|u1");
-  if (!fits || s.shape.size() != (two ? 2u : 1u) || s.shape[0] != episode.size() ||
-      (two && s.shape[1] != width))
+  const size_t width = column.numbers(), size = width * sizeof(T);
+  const ArrayShape s = in.shape(column.name), wanted = column.shape(episode.size());
+  const bool fits = s.type == wanted.type || (sizeof(T) == 1 && s.type == "|u1");
+  if (!fits || s.shape != wanted.shape)
     throw Failure(std::string(column.name) + ": it does not have the type or shape of a recording's array");
   size_t begin = 0;
   const std::string all = in.bytes(column.name, &begin);
@@ -262,7 +260,7 @@ std::string fault_of(const DataSet& set) {
     const DataEpisode& e = set.episodes[i];
     std::string fault;
     each_column(set, [&](const auto& column) {
-      if ((e.*column.rows).size() != e.rows() * numbers_in_a_row(column)) fault = column.name;
+      if ((e.*column.rows).size() != e.rows() * column.numbers()) fault = column.name;
     });
     if (!fault.empty())
       return format("episode %zu: %s does not fit its %zu rows", i, fault.c_str(), e.rows());
@@ -278,21 +276,19 @@ uint64_t hash_of(const DataSet& set) {
     fnv.add(&checksum, sizeof checksum);  // little-endian, as the machine is
   };
   each_column(set, [&](const auto& column) {
-    uLong checksum = 0;
+    uint32_t checksum = 0;
     for (const DataEpisode& e : set.episodes) {
       const auto& rows = e.*column.rows;
-      if (!rows.empty())
-        checksum =
-            crc32_z(checksum, reinterpret_cast<const Bytef*>(rows.data()), rows.size() * sizeof rows[0]);
+      if (!rows.empty()) checksum = checksum_of(checksum, rows.data(), rows.size() * sizeof rows[0]);
     }
-    add(column.name, static_cast<uint32_t>(checksum));
+    add(column.name, checksum);
   });
-  uLong checksum = 0;
+  uint32_t checksum = 0;
   for (const DataEpisode& e : set.episodes) {
     const auto count = static_cast<uint32_t>(e.rows());
-    checksum = crc32_z(checksum, reinterpret_cast<const Bytef*>(&count), sizeof count);
+    checksum = checksum_of(checksum, &count, sizeof count);
   }
-  add("length", static_cast<uint32_t>(checksum));
+  add("length", checksum);
   return fnv.value;
 }
 
@@ -334,9 +330,7 @@ void write_set(const DataSet& set, const std::string& path) {
   out.whole("episode", {"<i8", {rows}}, raw_bytes(episode));
   each_column(set, [&](const auto& column) {
     using T = typename std::decay_t<decltype(DataEpisode().*column.rows)>::value_type;
-    ArrayShape array{kArrayType<T>, {rows}};
-    if (column.width > 0 || std::strcmp(column.name, "cost") == 0) array.shape.push_back(column.width);
-    out.begin(column.name, array);
+    out.begin(column.name, column.shape(rows));
     for (const DataEpisode& e : set.episodes)
       out.add((e.*column.rows).data(), (e.*column.rows).size() * sizeof(T));
     out.flush();

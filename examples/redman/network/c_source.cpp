@@ -476,7 +476,7 @@ std::string memory_text(const Network& network, const Layers& layers, bool int8)
     out = replaced(out, "GATES", "") + kRow + normalise +
           replaced(kHistory, "KEPT", std::to_string(m.columns.size()));
     out += layer_calls(layers.actor, int8, "  ", "NAME_activate");
-    return out + replaced(kStateTail, "LAST", last_row(layers.actor));
+    return out + replaced(kActTail, "LAST", last_row(layers.actor)) + kKeepState + "}\n";
   }
   out = replaced(out, "GATES", replaced(kGates, "COUNT", std::to_string(layers.memory[0].out)));
   out += std::string(kRow) + normalise;
@@ -488,7 +488,7 @@ std::string memory_text(const Network& network, const Layers& layers, bool int8)
       layer_call(layers.memory[0], int8, seen, "gates") + layer_call(layers.memory[1], int8, "state", "part");
   out += replaced(replaced(kGru, "UNITS", std::to_string(m.units)), "TWICE", std::to_string(2 * m.units));
   out += layer_call(layers.actor.back(), int8, "next", last_row(layers.actor));
-  return out + replaced(kStateTail, "LAST", last_row(layers.actor));
+  return out + replaced(kActTail, "LAST", last_row(layers.actor)) + kKeepState + "}\n";
 }
 
 std::string act_text(const Network& network, const Layers& layers, bool int8) {
@@ -498,7 +498,7 @@ std::string act_text(const Network& network, const Layers& layers, bool int8) {
   out += kRow;
   out += network.find("normalizer.clip") ? kNormalise : kTake;
   out += layer_calls(layers.actor, int8, "  ", "NAME_activate");
-  return out + replaced(kActTail, "LAST", last_row(layers.actor));
+  return out + replaced(kActTail, "LAST", last_row(layers.actor)) + "}\n";
 }
 
 // The self-test's clouds.

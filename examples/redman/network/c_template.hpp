@@ -220,15 +220,9 @@ inline constexpr const char* kHistory = R"(  for (i = 0; i < NAME_state_size; ++
   }
 )";
 
-inline constexpr const char* kStateTail = R"(  for (i = 0; i < NAME_action_dim; ++i) {
-    const float a = SQUASH_OPENLAST[i]SQUASH_CLOSE;
-    action[i] = a < LOWEST ? LOWEST : a > HIGHEST ? HIGHEST : a;
-    fault += action[i] - action[i];
-  }
-  for (i = 0; i < NAME_action_dim; ++i) action[i] += fault;
-  if (fault == 0.0f)
+// Behind kActTail.
+inline constexpr const char* kKeepState = R"(  if (fault == 0.0f)
     for (i = 0; i < NAME_state_size; ++i) state[i] = next[i];
-}
 )";
 
 inline constexpr const char* kRow = R"(  for (i = 0; i < NAME_obs_dim; ++i) {
@@ -306,7 +300,6 @@ inline constexpr const char* kActTail = R"(  for (i = 0; i < NAME_action_dim; ++
     fault += action[i] - action[i];
   }
   for (i = 0; i < NAME_action_dim; ++i) action[i] += fault;
-}
 )";
 
 inline constexpr const char* kTestHead = R"(

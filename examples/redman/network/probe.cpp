@@ -3,15 +3,16 @@
 #include <redman/memory.hpp>
 #include <redman/sense.hpp>
 
+#include "common/scatter.hpp"
+
 namespace tool {
 namespace {
 
 // Plain uniform numbers: splitmix64.
 float signed_unit(uint64_t& state) {
-  uint64_t z = state += 0x9e3779b97f4a7c15u;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  return static_cast<float>((z ^ (z >> 31)) >> 40) * 0x1p-23f - 1;
+  const uint64_t bits = scattered(state);
+  state += 0x9e3779b97f4a7c15u;
+  return static_cast<float>(bits >> 40) * 0x1p-23f - 1;
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "common/files.hpp"
 #include "common/names.hpp"
+#include "common/scatter.hpp"
 #include "common/text.hpp"
 #include "play/plan_word.hpp"
 #include "play/trained.hpp"
@@ -52,13 +53,6 @@ redman::Agent trained_agent(const std::string& folder, const redman::Pool& pool)
 
 bool has_ending(const std::string& word, const std::string& ending) {
   return word.size() > ending.size() && word.substr(word.size() - ending.size()) == ending;
-}
-
-uint64_t mixed(uint64_t x) {
-  x += 0x9e3779b97f4a7c15u;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-  return x ^ (x >> 31);
 }
 
 }  // namespace
@@ -184,7 +178,7 @@ void Actor::make_planners(const ActorChoice& choice, const redman::Pool& pool, u
   const std::vector<double> limits = cost_limits(pool, choice.limits);
   for (size_t i = 0; i < pool.num_envs(); ++i) {
     auto config = redman::planner_config(pool, choice.plan_settings.c_str());
-    config.seed = mixed(seed + i);
+    config.seed = scattered(seed + i);
     config.cost_limits = limits.data();
     config.policy = proposer_ ? proposer_->get() : nullptr;
     config.agent = critic_ ? critic_->get() : nullptr;

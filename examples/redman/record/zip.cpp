@@ -51,10 +51,6 @@ T value_at(const std::string& bytes, size_t at) {
   return value;
 }
 
-uint32_t checksum_of(uint32_t before, const void* bytes, size_t size) {
-  return static_cast<uint32_t>(crc32_z(before, static_cast<const Bytef*>(bytes), size));
-}
-
 // The first `size` bytes of what is packed; `whole`: it ends there.
 std::string inflated(const std::string& packed, size_t size, bool whole) {
   std::string out(size, '\0');
@@ -81,6 +77,10 @@ std::string inflated(const std::string& packed, size_t size, bool whole) {
 }
 
 }  // namespace
+
+uint32_t checksum_of(uint32_t before, const void* bytes, size_t size) {
+  return static_cast<uint32_t>(crc32_z(before, static_cast<const Bytef*>(bytes), size));
+}
 
 void ZipWriter::begin(const std::string& name, uint64_t size) {
   close_member();

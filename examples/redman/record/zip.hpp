@@ -10,6 +10,9 @@
 
 namespace tool {
 
+// CRC-32 of bytes behind others whose one was `before`.
+uint32_t checksum_of(uint32_t before, const void* bytes, size_t size);
+
 class ZipWriter {
  public:
   explicit ZipWriter(PreparedFile& file) : file_(file) {}

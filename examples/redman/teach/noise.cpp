@@ -2,20 +2,11 @@
 
 #include <cmath>
 
+#include "common/scatter.hpp"
+
 namespace tool {
-namespace {
-
-uint64_t stirred(uint64_t x) {
-  x += 0x9e3779b97f4a7c15u;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-  return x ^ (x >> 31);
-}
-
-}  // namespace
-
 ActionNoise::ActionNoise(size_t worlds, size_t width, double mean, uint64_t seed)
-    : width_(width), counter_(stirred(seed)), noise_(worlds * width) {
+    : width_(width), counter_(scattered(seed)), noise_(worlds * width) {
   for (size_t i = 0; i < worlds; ++i) {
     const double u = uniform();
     deviation_.push_back(i % 4 == 0 ? 0 : 2 * mean * u);
@@ -23,7 +14,7 @@ ActionNoise::ActionNoise(size_t worlds, size_t width, double mean, uint64_t seed
 }
 
 double ActionNoise::uniform() {
-  return static_cast<double>(stirred(counter_++) >> 11) * 0x1p-53;
+  return static_cast<double>(scattered(counter_++) >> 11) * 0x1p-53;
 }
 
 // By Box and Muller; the library's own distributions would differ between compilers.
