@@ -7,11 +7,7 @@
 namespace {
 
 rdm_agent_config config_of(int32_t algo, CountingHost* host) {
-  rdm_algo info{};
-  info.struct_size = sizeof info;
-  EXPECT_EQ(rdm_algo_at(algo, &info), RDM_OK);
-  rdm_agent_config c = agent_config();
-  c.algo = info.name;
+  rdm_agent_config c = agent_config(algo);
   c.host = host ? &host->hooks : nullptr;
   return c;
 }

@@ -84,8 +84,8 @@ bool keeps_limits(const char* algo) {
 
 // Where all or nothing is best, as here, what learns from a replay memory acts almost without noise and does one of
 // the two in turn: its limits are looked at where a mean can be kept (tests/algos/test_off_policy.cpp, the manual).
-bool replays(const std::string& algo) {
-  return algo.starts_with("td3") || algo.starts_with("sac");
+bool replays(int32_t algo) {
+  return has_option(algo, "replay_rows");
 }
 
 std::vector<std::string> safe_algos() {
@@ -94,7 +94,7 @@ std::vector<std::string> safe_algos() {
     rdm_algo algo = {};
     algo.struct_size = sizeof algo;
     EXPECT_EQ(rdm_algo_at(i, &algo), RDM_OK);
-    if (keeps_limits(algo.name) && !replays(algo.name)) names.emplace_back(algo.name);
+    if (keeps_limits(algo.name) && !replays(i)) names.emplace_back(algo.name);
   }
   return names;
 }

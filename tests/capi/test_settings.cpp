@@ -135,12 +135,8 @@ TEST(Settings, AreLaidOverOptions) {
 
 TEST(Settings, OfEveryAlgorithmReadBack) {
   for (int32_t i = 0; i < rdm_algo_count(); ++i) {
-    rdm_algo algo{};
-    algo.struct_size = sizeof algo;
-    ASSERT_EQ(rdm_algo_at(i, &algo), RDM_OK);
-    SCOPED_TRACE(algo.name);
-    rdm_agent_config c = agent_config();
-    c.algo = algo.name;
+    rdm_agent_config c = agent_config(i);
+    SCOPED_TRACE(c.algo);
     c.settings = "discount=0.9712345678901234\nlearning_rate=1.5e-3";
     rdm_agent* a = make_agent(c);
     ASSERT_NE(a, nullptr);

@@ -208,6 +208,21 @@ inline void require_refusal(rdm_result r) {
   HARD_REQUIRE(*rdm_last_error() && good_text(rdm_last_error()), "text of code %d: %s", r, rdm_last_error());
 }
 
+inline bool has_option(const std::string& algo, const char* key) {
+  for (int32_t i = 0; i < rdm_algo_count(); ++i) {
+    rdm_algo a{};
+    a.struct_size = sizeof a;
+    HARD_REQUIRE(rdm_algo_at(i, &a) == RDM_OK, "%s", rdm_last_error());
+    for (int32_t k = 0; algo == a.name && k < a.num_options; ++k) {
+      rdm_option_spec o{};
+      o.struct_size = sizeof o;
+      HARD_REQUIRE(rdm_algo_option_at(i, k, &o) == RDM_OK, "%s", rdm_last_error());
+      if (std::strcmp(o.key, key) == 0) return true;
+    }
+  }
+  return false;
+}
+
 // A small agent for rows of 3 observations, 2 actions and 2 costs: 4 rows, 8 decisions a horizon.
 struct AgentOf {
   static constexpr int32_t kObs = 3, kActions = 2, kCosts = 2, kRows = 4, kHorizon = 8;
@@ -223,10 +238,15 @@ struct AgentOf {
     handle = nullptr;
   }
   void configure(const std::string& algo, const rdm_host* host = nullptr, int32_t threads = 0) {
-    static const rdm_option options[] = {{"hidden", "4,4", 0},
-                                         {"horizon", nullptr, kHorizon},
-                                         {"passes", nullptr, 2},
-                                         {"minibatches", nullptr, 2}};
+    static const rdm_option usual[] = {{"hidden", "4,4", 0},
+                                       {"horizon", nullptr, kHorizon},
+                                       {"passes", nullptr, 2},
+                                       {"minibatches", nullptr, 2}};
+    static const rdm_option replay[] = {{"hidden", "4,4", 0},
+                                        {"horizon", nullptr, kHorizon},
+                                        {"replay_rows", nullptr, 64},
+                                        {"batch_rows", nullptr, 8},
+                                        {"start_steps", nullptr, 4}};
     static const double limits[kCosts] = {1, -1};
     algo_ = algo;
     rdm_agent_config_init(&config, sizeof config);
@@ -237,9 +257,9 @@ struct AgentOf {
     config.num_envs = kRows;
     config.num_threads = threads;
     config.cost_limits = limits;
-    // what an algorithm has no use for is laid under, not asked for
-    config.defaults = options;
-    config.num_defaults = 4;
+    const bool replays = has_option(algo, "replay_rows");
+    config.options = replays ? replay : usual;
+    config.num_options = replays ? 5 : 4;
     config.host = host;
   }
   rdm_result create() { return rdm_agent_create(&handle, &config); }
@@ -294,8 +314,7 @@ inline std::vector<std::string> all_algos() {
     rdm_algo a{};
     a.struct_size = sizeof a;
     HARD_REQUIRE(rdm_algo_at(i, &a) == RDM_OK, "%s", rdm_last_error());
-    const std::string name = a.name;  // learners from a replay memory have other options
-    if (!name.starts_with("td3") && !name.starts_with("sac")) out.push_back(name);
+    out.emplace_back(a.name);
   }
   return out;
 }

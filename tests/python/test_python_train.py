@@ -224,6 +224,7 @@ class Pages(unittest.TestCase):
             blocks = re.findall(r"```python\n(.*?)```", (TREE / page).read_text(encoding="utf-8"), re.S)
             self.assertTrue(blocks, page)
             with tempfile.TemporaryDirectory() as folder:
+                (Path(folder) / "examples").symlink_to(TREE / "examples")  # pages are read at the top of the tree
                 for block in blocks:
                     if "import gymnasium" in block and importlib.util.find_spec("gymnasium") is None:
                         continue  # the tests of the adapters run it where a copy is

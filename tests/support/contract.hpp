@@ -115,6 +115,26 @@ inline uint64_t hash_of(const rdm_pool* p, int32_t env = -1) {
 inline constexpr rdm_option kSmallAgentOptions[] = {
     {"hidden", "8,8", 0}, {"horizon", nullptr, 8}, {"passes", nullptr, 2}, {"minibatches", nullptr, 2}};
 
+// Those of a learner from a replay memory, which learns in each of its epochs.
+inline constexpr rdm_option kSmallReplayOptions[] = {{"hidden", "8,8", 0},
+                                                     {"horizon", nullptr, 8},
+                                                     {"replay_rows", nullptr, 64},
+                                                     {"batch_rows", nullptr, 8},
+                                                     {"start_steps", nullptr, 4}};
+
+inline bool has_option(int32_t algo, const char* key) {
+  rdm_algo info{};
+  info.struct_size = sizeof info;
+  EXPECT_EQ(rdm_algo_at(algo, &info), RDM_OK);
+  for (int32_t i = 0; i < info.num_options; ++i) {
+    rdm_option_spec o{};
+    o.struct_size = sizeof o;
+    EXPECT_EQ(rdm_algo_option_at(algo, i, &o), RDM_OK);
+    if (std::strcmp(o.key, key) == 0) return true;
+  }
+  return false;
+}
+
 inline rdm_agent_config agent_config() {
   rdm_agent_config c;
   EXPECT_EQ(rdm_agent_config_init(&c, sizeof c), RDM_OK);
@@ -123,6 +143,20 @@ inline rdm_agent_config agent_config() {
   c.num_envs = 4;
   c.options = kSmallAgentOptions;
   c.num_options = 4;
+  return c;
+}
+
+// The same of the algorithm with this place in the list.
+inline rdm_agent_config agent_config(int32_t algo) {
+  rdm_agent_config c = agent_config();
+  rdm_algo info{};
+  info.struct_size = sizeof info;
+  EXPECT_EQ(rdm_algo_at(algo, &info), RDM_OK);
+  c.algo = info.name;
+  if (has_option(algo, "replay_rows")) {
+    c.options = kSmallReplayOptions;
+    c.num_options = 5;
+  }
   return c;
 }
 
