@@ -36,7 +36,7 @@ size_t refuse_calls(CountingHost& host, rdm_agent* a) {
   const std::vector<unsigned char> state = saved(a), policy = policy_bytes(a);
   std::vector<unsigned char> bytes(state.size() + policy.size());
   const std::string path = testing::TempDir() + "agent_memory.rdm";
-  float log_std[2];
+  float bias[8];
   size_t n = 0, refused = 0;
   const std::function<rdm_result()> calls[] = {
       [&] { return rdm_agent_write_state(a, bytes.data(), bytes.size(), &n); },
@@ -44,9 +44,8 @@ size_t refuse_calls(CountingHost& host, rdm_agent* a) {
       [&] { return rdm_agent_write_policy(a, nullptr, 0, &n); },
       [&] { return rdm_agent_write_policy(a, bytes.data(), bytes.size(), &n); },
       [&] { return rdm_agent_write_policy_file(a, path.c_str()); },
-      [&] { return rdm_agent_get_tensor(a, "actor.log_std", log_std, 2); },
-      [&] { return rdm_agent_get_tensor(a, "actor.2.bias", log_std, 2); },
-      [&] { return rdm_agent_set_tensor(a, "actor.log_std", log_std, 2); },
+      [&] { return rdm_agent_get_tensor(a, "actor.0.bias", bias, 8); },
+      [&] { return rdm_agent_set_tensor(a, "actor.0.bias", bias, 8); },
       [&] {
         const rdm_option rate{"learning_rate", nullptr, 3e-4};
         return rdm_agent_set_option(a, &rate);
