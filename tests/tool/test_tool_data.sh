@@ -68,10 +68,16 @@ assert ends.sum() == len(a["source"]) and ends[a["episode_begin"][1:] - 1].all()
 assert not (a["terminated"] & a["truncated"]).any()
 cut = {k: v[:-1] if len(v.shape) and len(v) == len(a["obs"]) else v for k, v in a.items()}
 del cut["final_obs"], cut["source"], cut["episode_begin"]
-np.savez("cut.npz", **cut)' || failed=1
+np.savez("cut.npz", **cut)
+none = {k: v[:2] for k, v in cut.items() if len(v.shape) and len(v) == len(cut["obs"])}
+np.savez("none.npz", **none)' || failed=1
   "$tool" data info again.npz --json > info.json || failed=1
   [ "$(one hash info.json)" = "$(one hash two_state.json)" ] || { echo 'numpy saved it again: another hash'; failed=1; }
   "$tool" data info cut.npz > info || failed=1
+  # of no whole episode nothing is known, which is not 0
+  "$tool" data info none.npz > info.none && "$tool" data info none.npz --json > none.json || failed=1
+  grep -q '^return  *-  *-  *-  *-  *-$' info.none && grep -q '"success_rate":null' none.json ||
+    { echo 'numbers of no whole episode'; cat info.none none.json; failed=1; }
   grep -q '1 unfinished' info || { echo 'an episode without an end is not said to be unfinished'; cat info; failed=1; }
 fi
 

@@ -7,11 +7,12 @@ namespace tool {
 
 Json score_json(const DataSet& set, const Evaluation& e) {
   const ReturnRange range = return_range(set);
-  const double width = range.most - range.least,
-               cost = e.summary.cost_mean.empty() ? 0 : e.summary.cost_mean[0];
+  const double width = range.most - range.least;
+  const bool counted = !e.summary.cost_mean.empty();
   Json costs = Json::array();
   for (const double limit : limits_of(set))
-    costs.push_back({{"limit", limit}, {"cost", limit > 0 ? Json(cost / limit) : Json()}});
+    costs.push_back(
+        {{"limit", limit}, {"cost", counted && limit > 0 ? Json(e.summary.cost_mean[0] / limit) : Json()}});
   return {{"return", width > 0 ? Json((e.summary.return_mean - range.least) / width) : Json()},
           {"return_min", range.least},
           {"return_max", range.most},

@@ -1,19 +1,17 @@
 #include "data/summary.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 
+#include "common/statistics.hpp"
 #include "common/text.hpp"
 
 namespace tool {
 namespace {
 
-double quantile_of(std::vector<double> values, double share) {
-  if (values.empty()) return 0;
-  const auto at = static_cast<size_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
-  return values[at];
-}
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 Json quantiles_json(const std::vector<double>& values) {
   Json out = Json::array();
@@ -24,7 +22,13 @@ Json quantiles_json(const std::vector<double>& values) {
 double share_of(const std::vector<double>& values, double above, double most) {
   const auto count =
       std::count_if(values.begin(), values.end(), [&](double v) { return v > above && v <= most; });
-  return values.empty() ? 0 : static_cast<double>(count) / static_cast<double>(values.size());
+  return values.empty() ? kUnknown : static_cast<double>(count) / static_cast<double>(values.size());
+}
+
+// "-" of what is not known.
+std::string known_text(const Json& v, const char* how) {
+  const double x = v.get<double>();
+  return std::isnan(x) ? "-" : format(how, x);
 }
 
 std::string source_name(const DataSet& set, size_t index) {
@@ -46,14 +50,12 @@ double first_limit(const DataSet& set) {
 }  // namespace
 
 ReturnRange return_range(const DataSet& set) {
-  ReturnRange range;
-  bool any = false;
+  ReturnRange range{kUnknown, kUnknown};
   for (const DataEpisode& e : set.episodes) {
     if (!e.ended()) continue;
     const double sum = e.sum_of_rewards();
-    range.least = any ? std::min(range.least, sum) : sum;
-    range.most = any ? std::max(range.most, sum) : sum;
-    any = true;
+    range.least = std::fmin(range.least, sum);  // of a number and of NaN: the number
+    range.most = std::fmax(range.most, sum);
   }
   return range;
 }
@@ -86,7 +88,7 @@ Json summary_json(const DataSet& set) {
     (e.terminated.back() ? ended : cut) += 1;
     success += std::find(e.success.begin(), e.success.end(), 1) != e.success.end();
     returns.push_back(e.sum_of_rewards());
-    costs.push_back(set.cost_dim ? e.sum_of_costs(0, set.cost_dim) : 0);
+    costs.push_back(set.cost_dim ? e.sum_of_costs(0, set.cost_dim) : kUnknown);
     lengths.push_back(static_cast<double>(e.rows()));
     Group& g = groups[e.source];
     ++g.episodes;
@@ -103,25 +105,26 @@ Json summary_json(const DataSet& set) {
                        {"return", g.ret / n},
                        {"cost", g.cost / n}});
   }
-  Json out = {{"task", set.task},
-              {"rows", set.rows()},
-              {"episodes", set.episodes.size()},
-              {"terminated", ended},
-              {"truncated", cut},
-              {"unfinished", unfinished},
-              {"success_rate",
-               returns.empty() ? 0 : static_cast<double>(success) / static_cast<double>(returns.size())},
-              {"obs_dim", set.obs_dim},
-              {"action_dim", set.action_dim},
-              {"cost_dim", set.cost_dim},
-              {"final_obs", set.finals()},
-              {"length", quantiles_json(lengths)},
-              {"return", quantiles_json(returns)},
-              {"cost", quantiles_json(costs)},
-              {"limits", limits_of(set)},
-              {"cost_limit", limit < 0 ? Json() : Json(limit)},
-              {"sources", sources},
-              {"hash", hash_text(set)}};
+  Json out = {
+      {"task", set.task},
+      {"rows", set.rows()},
+      {"episodes", set.episodes.size()},
+      {"terminated", ended},
+      {"truncated", cut},
+      {"unfinished", unfinished},
+      {"success_rate",
+       returns.empty() ? kUnknown : static_cast<double>(success) / static_cast<double>(returns.size())},
+      {"obs_dim", set.obs_dim},
+      {"action_dim", set.action_dim},
+      {"cost_dim", set.cost_dim},
+      {"final_obs", set.finals()},
+      {"length", quantiles_json(lengths)},
+      {"return", quantiles_json(returns)},
+      {"cost", quantiles_json(costs)},
+      {"limits", limits_of(set)},
+      {"cost_limit", limit < 0 ? Json() : Json(limit)},
+      {"sources", sources},
+      {"hash", hash_text(set)}};
   if (limit >= 0)
     out["shares"] = {{"none", share_of(costs, -1, 0)},
                      {"within", share_of(costs, 0, limit)},
@@ -141,24 +144,24 @@ std::string summary_text(const Json& s) {
   Table spread({"of an episode", "least", "10 %", "median", "90 %", "most"});
   for (const char* key : {"length", "return", "cost"}) {
     std::vector<std::string> row = {key};
-    for (const Json& v : s[key]) row.push_back(format("%.4g", v.get<double>()));
+    for (const Json& v : s[key]) row.push_back(known_text(v, "%.4g"));
     spread.add(row);
   }
   text += spread.text();
   if (const auto shares = s.find("shares"); shares != s.end()) {
-    const auto percent = [&](const char* key) { return 100 * (*shares)[key].get<double>(); };
-    text += format(
-        "episodes by cost: %.0f%% without any, %.0f%% within the limit of %s, %.0f%% up to twice that, "
-        "%.0f%% above\n",
-        percent("none"), percent("within"), number_text(s["cost_limit"].get<double>()).c_str(),
-        percent("to_twice"), percent("above_twice"));
+    const auto percent = [&](const char* key) {
+      return known_text(100 * (*shares)[key].get<double>(), "%.0f %%");
+    };
+    text += "episodes by cost: " + percent("none") + " without any, " + percent("within") +
+            " within the limit of " + number_text(s["cost_limit"].get<double>()) + ", " +
+            percent("to_twice") + " up to twice that, " + percent("above_twice") + " above\n";
   }
   if (!s["sources"].empty()) {
     Table table({"played by", "episodes", "length", "return", "cost"});
     for (const Json& r : s["sources"])
       table.add({r["name"], std::to_string(r["episodes"].get<unsigned long long>()),
                  format("%.1f", r["length"].get<double>()), format("%.4g", r["return"].get<double>()),
-                 format("%.4g", r["cost"].get<double>())});
+                 known_text(r["cost"], "%.4g")});
     text += table.text();
   }
   if (!s["unfinished"].empty()) {

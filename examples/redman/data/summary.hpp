@@ -6,7 +6,7 @@
 namespace tool {
 
 struct ReturnRange {
-  double least = 0, most = 0;  // sums of rewards of episodes that ended
+  double least, most;  // sums of rewards of episodes that ended; NaN where none did
 };
 ReturnRange return_range(const DataSet& set);
 // The limits at which policies that learned from it are judged; empty: unknown.
