@@ -178,7 +178,8 @@ class Files(unittest.TestCase):
         feed = self.folder / "feed"
         for data, word in ((whole[:-5], "cut short"), (whole[:len(episode._scene)], "no frame"), (b"", "no scene"),
                            (episode._frames[0], "task: it is missing"), (b"\xff" * 64, "a message of 4294967295 bytes"),
-                           (episode._scene + episode._frames[0][:4] + b"\xf0" + episode._frames[0][5:], "with a text of"),
+                           (episode._scene + episode._frames[0][:4] + bytes([episode._frames[0][4] + 1]) + episode._frames[0][5:],
+                            "with a text of"),
                            (whole.replace(b'"contacts": 0', b'"contacts": 9', 1), "does not fit its scene"),
                            (whole.replace(b'"dt": ', b'"dt":-', 1), "dt: it is outside")):
             feed.write_bytes(data)

@@ -126,6 +126,19 @@ class OfAPool(unittest.TestCase):
         self.assertEqual(seen["contacts"], len(contacts))
         np.testing.assert_array_equal(seen["numbers"][rows.size:].reshape(-1, 6)[:, 3:], contacts["force"])
 
+    def test_it_shows_the_cloud_of_the_watched_world(self):
+        pool = redman.Pool("hand_over_safe_finger", num_envs=2, options={"modality": "points", "points": 64})
+        pool.reset()
+        page = self.look(self.open(pool))
+        for world in (0, 1):
+            page.ask(do="watch", world=world)
+            wait(lambda: pool._followers.all[0][0].__self__._state["watched"] == world)
+            pool.step(pool.baseline("random"))
+            seen = page.until(lambda said: said.get("points") and said["watched"] == world and said["step"][0] == world + 1)
+            cloud = seen["numbers"][-4 * seen["points"]:]
+            np.testing.assert_array_equal(cloud[:-seen["points"]].reshape(-1, 3), pool.sensors.points[world])
+            np.testing.assert_array_equal(cloud[-seen["points"]:], pool.sensors.point_class[world])
+
     def test_a_paused_page_holds_the_loop_and_steps_it(self):
         pool = redman.Pool("ball_run", options={"max_steps": 1000})
         pool.reset()

@@ -75,7 +75,7 @@ class Episode(Hinted):
         """Adds the world as it is now."""
         if not self._frames:
             self._scene = self._feed.scene()
-        self._frames.append(self._feed.frame(self._env, stepped_in))
+        self._frames.append(self._feed.frame(self._env, cloud=False, stepped_in=stepped_in))
         self._states.append(self._feed.pool.state(self._env))
         self._pages.clear()
 

@@ -80,8 +80,8 @@ class Feed:
         self._gained += reward
         self._summed += cost
 
-    def frame(self, contacts: Optional[int] = None, stepped_in: Optional[Array] = None) -> bytes:
-        """The worlds as they are now, as a message. contacts: of which world."""
+    def frame(self, world: int, *, contacts: bool = True, cloud: bool = True, stepped_in: Optional[Array] = None) -> bytes:
+        """The worlds as they are now, as a message; with what one of them touches, and what its cameras see where there is a cloud."""
         pool, at = self.pool, slice(self.worlds.start, self.worlds.stop)
         n = len(self.worlds)
         head: list[Array] = [pool.reward[at], pool.episode_return[at], pool.episode_step[at], np.where(pool.terminated[at], 2, pool.truncated[at]),
@@ -92,12 +92,18 @@ class Feed:
             head[:2], costs = [reward, self._gained], [cost, self._summed]
         rows = np.concatenate([np.stack(head, axis=1), *costs, pool.action[at]], axis=1)
         parts = [np.array([pool.poses(i)[self._moving] for i in self.worlds]).reshape(-1), rows.reshape(-1)]
-        count = 0
-        if contacts is not None:
-            found = pool.contacts(contacts)
-            count = len(found)
+        touched = points = 0
+        if contacts:
+            found = pool.contacts(world)
+            touched = len(found)
             parts.append(np.concatenate([found["position"], found["force"]], axis=1).reshape(-1))
-        return _message({"say": "frame", "contacts": count}, np.concatenate(parts))
+        if cloud:
+            sensors = pool.sensors
+            if sensors.points is not None and sensors.point_class is not None:
+                points = len(sensors.points[world])
+                parts += [sensors.points[world].reshape(-1), sensors.point_class[world]]
+        head_of = {"say": "frame", "world": world - self.worlds.start, "contacts": touched, "points": points}
+        return _message(head_of, np.concatenate(parts))
 
 
 class Followers:

@@ -167,7 +167,7 @@ class PoolWindow(Window):
         """Sends the worlds as they are now."""
         watched = self._env + int(self._state["watched"])
         data = b"" if self._scene_sent else self._feed.scene()
-        data += self._feed.frame(watched if self._state["contacts"] else None)
+        data += self._feed.frame(watched, contacts=self._state["contacts"])
         assert self._process.stdin is not None
         try:
             self._process.stdin.write(data)

@@ -115,10 +115,12 @@ FeedScene::FeedScene(const FeedMessage& message) {
 }
 
 FeedFrame::FeedFrame(const FeedScene& scene, const FeedMessage& message) {
-  const auto count = static_cast<size_t>(integer_at(message.head, "contacts", 0, kMostParts));
+  const auto count = static_cast<size_t>(integer_at(message.head, "contacts", 0, kMostParts)),
+             seen = static_cast<size_t>(integer_at(message.head, "points", 0, kMostParts));
+  world = static_cast<int32_t>(integer_at(message.head, "world", 0, static_cast<int64_t>(scene.worlds) - 1));
   const size_t costs = scene.looks.costs.size(), width = kRow + 2 * costs + scene.actions.size(),
                posed = scene.worlds * scene.moving.size() * 7;
-  if (message.numbers.size() != posed + scene.worlds * width + 6 * count)
+  if (message.numbers.size() != posed + scene.worlds * width + 6 * count + 4 * seen)
     throw Failure(format("a frame of %zu numbers does not fit its scene", message.numbers.size()));
   const float* at = message.numbers.data();
   poses.assign(at, at + posed);
@@ -138,6 +140,7 @@ FeedFrame::FeedFrame(const FeedScene& scene, const FeedMessage& message) {
     rows.push_back(std::move(row));
   }
   contacts.assign(at, at + 6 * count);
+  points.assign(at + 6 * count, at + 6 * count + 4 * seen);
 }
 
 namespace {

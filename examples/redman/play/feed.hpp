@@ -3,9 +3,10 @@
 //
 // A message is u32 size of what follows, u32 size of a JSON text, the text, and float32 numbers, all little-endian.
 //   scene   JSON: members below; numbers: poses [worlds][shapes][7] of all shapes, position (m) and quaternion (x, y, z, w)
-//   frame   JSON: "contacts", how many; numbers: poses [worlds][moving][7] of the shapes that are not fixed; rows
-//           [worlds][6 + 2 costs + actions]: reward, return, step, ended (1 by time, 2 terminated), success, stepped_in, each
-//           cost, its sum over the episode, the action; contacts [contacts][6] of the watched world, position (m), force (N)
+//   frame   JSON: "contacts" and "points", how many, and "world", the one that they are of; numbers: poses [worlds][moving][7]
+//           of the shapes that are not fixed; rows [worlds][6 + 2 costs + actions]: reward, return, step, ended (1 by time, 2 terminated), success, stepped_in, each
+//           cost, its sum over the episode, the action; contacts [contacts][6], position (m), force (N); points [points][3] of
+//           what its cameras see (m), and the class of each [points]
 #pragma once
 #include <optional>
 #include <string>
@@ -60,7 +61,9 @@ struct FeedFrame {
 
   std::vector<float> poses;     // [worlds][moving][7]
   std::vector<Row> rows;        // [worlds]
+  int32_t world = 0;            // of contacts and points
   std::vector<float> contacts;  // [n][6]
+  std::vector<float> points;    // [m][3], then a class for each
 };
 
 // The episode that a file of such messages holds, of one world. Failure, which names the file.

@@ -15,7 +15,7 @@ namespace {
 constexpr size_t kMostWaiting = 64;  // messages that are read ahead
 
 size_t bytes_of(const FeedFrame& f) {
-  size_t floats = f.poses.size() + f.contacts.size();
+  size_t floats = f.poses.size() + f.contacts.size() + f.points.size();
   for (const FeedFrame::Row& r : f.rows) floats += 16 + r.cost.size() + r.sum.size() + r.action.size();
   return sizeof f + sizeof(float) * floats;
 }
@@ -252,7 +252,11 @@ std::string Fed::frame(int64_t since) const {
     rows.back().insert(rows.back().begin(), number_json(r.episode_return));
   }
   std::vector<float> numbers = f.poses;
-  if (contacts_) numbers.insert(numbers.end(), f.contacts.begin(), f.contacts.end());
+  const bool own_world = f.world == watched_;  // else what it touches and sees comes with the next frame
+  const size_t contacts = contacts_ && own_world ? f.contacts.size() / 6 : 0;
+  const size_t points = own_world ? f.points.size() / 4 : 0;
+  if (contacts) numbers.insert(numbers.end(), f.contacts.begin(), f.contacts.end());
+  if (points) numbers.insert(numbers.end(), f.points.begin(), f.points.end());
   return frame_bytes({{"at", at_},
                       {"first", first_},
                       {"last", last()},
@@ -263,8 +267,8 @@ std::string Fed::frame(int64_t since) const {
                       {"hand", by_hand_},
                       {"shield", !scene_->looks.shield.empty()},
                       {"watched", watched_},
-                      {"contacts", contacts_ ? f.contacts.size() / 6 : 0},
-                      {"points", 0},
+                      {"contacts", contacts},
+                      {"points", points},
                       {"step", step},
                       {"reward", reward},
                       {"return", sums},

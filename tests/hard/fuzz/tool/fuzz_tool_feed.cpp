@@ -58,10 +58,10 @@ std::vector<Bytes> seeds() {
   std::vector<float> frame = pose;
   frame.insert(frame.end(), {1, 1, 1, 0, 0, 0, 0, 0, 0.5f});
   const std::string scene = message(kScene, pose),
-                    next = message("{\"say\":\"frame\",\"contacts\":0}", frame);
+                    next = message("{\"say\":\"frame\",\"world\":0,\"points\":0,\"contacts\":0}", frame);
   frame.insert(frame.end(), 6, 1.0f);
   return {bytes_of(scene), bytes_of(scene + next + next),
-          bytes_of(scene + message("{\"say\":\"frame\",\"contacts\":1}", frame))};
+          bytes_of(scene + message("{\"say\":\"frame\",\"world\":0,\"points\":0,\"contacts\":1}", frame))};
 }
 void whole(unsigned char*, size_t) {}
 size_t fixed_bytes() {
