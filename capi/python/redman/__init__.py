@@ -26,6 +26,7 @@ WHAT IS THERE. help(redman.Pool) and so on tell more.
                     Object.create, a .task file; check_task, c_function
     environments    redman.gym, redman.sb3, redman.safety, redman.omnisafe, redman.pettingzoo; make, make_vec
     data sets       redman.data: load, save and convert sets of episodes (.npz, .hdf5, .minari, .mcap); data.score
+    sharing         redman.hub: a policy with its card, in a folder or on the hub of models
     records         Algo, Build, Camera, Cost, Field, Joint, MapInfo, Note, Object, Option, PlannerSpec, PolicyInfo, PoolStats,
                     Poses, PretrainReport, RayHit, RecordingInfo, Robot, Shape, ShieldStats, Spec, TaskInfo
     numbers         Autoreset, BaselineKind, Feature, JointKind, NoteKind, OptionKind, OptionLevel, ResultCode, RobotKind,
@@ -116,6 +117,6 @@ if not TYPE_CHECKING:  # a type checker would take it for every name
         """Imports an adapter when it is first used; for names of other libraries, the error says what to write instead."""
         import importlib
         from ._names import module_hint
-        if name in ("data", "gym", "omnisafe", "pettingzoo", "safety", "sb3"):
+        if name in ("data", "gym", "hub", "omnisafe", "pettingzoo", "safety", "sb3"):
             return importlib.import_module(f".{name}", __name__)
         raise AttributeError(module_hint(name, __all__))
