@@ -86,7 +86,7 @@ Report bench_update(const UpdateFlags& flags) {
   agent.update(world.fill(agent, horizon));  // warm-up
 
   double seconds = 0;
-  int64_t work = 0, updates = 0, allocations = 0;
+  int64_t work = 0, passes_done = 0, updates = 0, allocations = 0;
   while (seconds < flags.seconds || updates < 3) {
     const float* last = world.fill(agent, horizon);
     const int64_t allocated = allocation_count();
@@ -95,22 +95,26 @@ Report bench_update(const UpdateFlags& flags) {
     seconds += since(clock);
     allocations += allocation_count() - allocated;
     work += int64_t{flags.samples} * e.passes;
+    passes_done += e.passes;  // of a learner from a replay memory: gradient steps
     ++updates;
   }
-  const double rate = static_cast<double>(work) / seconds;
+  const double rate = static_cast<double>(work) / seconds,
+               passes_rate = static_cast<double>(passes_done) / seconds;
   const double per_update =
       allocation_count() < 0 ? -1 : static_cast<double>(allocations) / static_cast<double>(updates);
   const Json json = {{"algo", algo_at(find_algo(flags.algo)).name},
                      {"samples", flags.samples},
                      {"threads", flags.threads},
                      {"samples_per_second", rate},
+                     {"passes_per_second", passes_rate},
                      {"allocations_per_update", per_update},
                      {"bytes", bytes},
                      {"updates", updates},
                      {"seconds", seconds}};
-  return {json,
-          format("%.0f samples/s (samples x passes; %lld updates), %g allocations per update, %.1f MB\n",
-                 rate, static_cast<long long>(updates), per_update, static_cast<double>(bytes) / 1e6)};
+  return {json, format("%.0f samples/s (samples x passes; %lld updates), %.4g passes/s, %g allocations per "
+                       "update, %.1f MB\n",
+                       rate, static_cast<long long>(updates), passes_rate, per_update,
+                       static_cast<double>(bytes) / 1e6)};
 }
 
 Report bench_act(const ActFlags& flags) {
