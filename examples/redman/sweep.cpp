@@ -2,7 +2,8 @@
 //
 // Every setting is tried before anything starts. What a run came to stands beside its folder (NAME.json), so that the
 // same command goes on where it was stopped, however that was: runs with a result are done, runs that have begun are
-// resumed, to the same bytes.
+// resumed, to the same bytes. Several processes, of one machine or of several that share the folder, divide the runs: who
+// trains one holds the lock of its log.
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>
@@ -189,6 +190,12 @@ std::vector<std::string> command_of(const SweepFlags& flags, const Cell& c) {
   return words;
 }
 
+struct Ran {
+  bool stopped = false;             // the time was over before all of it
+  size_t elsewhere = 0;             // runs that other sweeps trained meanwhile
+  std::vector<std::string> failed;  // run: its last words
+};
+
 #if !defined(_WIN32)
 void make_run_folders(const std::string& path) {
   for (size_t at = path.find('/', 1); at != std::string::npos; at = path.find('/', at + 1))
@@ -196,23 +203,34 @@ void make_run_folders(const std::string& path) {
   if (!is_folder(path)) mkdir(path.c_str(), 0777);
 }
 
-// Its result goes to NAME.json, what it says to NAME.log. It ends with this process.
-pid_t start(const SweepFlags& flags, const Cell& c) {
-  const std::vector<std::string> words = command_of(flags, c);
+// The log of a run, with its lock; -1: another sweep trains it. File systems that know no locks are taken as they are.
+int claim(const Cell& c) {
   make_run_folders(c.path.substr(0, c.path.rfind('/')));
-  const std::string log = c.path + ".log", result = c.result();
+  const std::string log = c.path + ".log";
+  const int file = open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+  if (file < 0) throw Failure("cannot write " + log + ": " + std::strerror(errno));
+  if (flock(file, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return file;
+  close(file);
+  return -1;
+}
+
+// Its result goes to NAME.json, what it says to NAME.log, whose lock goes with it. It ends with this process.
+pid_t start(const SweepFlags& flags, const Cell& c, int log) {
+  const std::vector<std::string> words = command_of(flags, c);
+  const std::string result = c.result();
   std::vector<char*> argv;
   for (const std::string& w : words) argv.push_back(const_cast<char*>(w.c_str()));
   argv.push_back(nullptr);
   const pid_t pid = fork();
-  if (pid < 0) throw Failure(std::string("no process could be started: ") + std::strerror(errno));
+  const int trouble = errno;
+  if (pid != 0) close(log);
+  if (pid < 0) throw Failure(std::string("no process could be started: ") + std::strerror(trouble));
   if (pid > 0) return pid;
 #if defined(__linux__)
   prctl(PR_SET_PDEATHSIG, SIGINT);
 #endif
   const int out = open(result.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
-  const int err = open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0666);
-  if (out < 0 || err < 0 || dup2(out, 1) < 0 || dup2(err, 2) < 0) _exit(126);
+  if (out < 0 || dup2(out, 1) < 0 || dup2(log, 2) < 0) _exit(126);
   execv(argv[0], argv.data());
   _exit(127);
 }
@@ -223,8 +241,8 @@ std::string last_line(const std::string& path) {
   return text.substr(text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n') + 1);
 }
 
-// Runs what has no result, so many at a time; true when the time was over before all of it.
-bool run_cells(const SweepFlags& flags, const std::vector<Cell>& cells, std::vector<std::string>* failed) {
+// Runs what has no result, so many at a time.
+Ran run_cells(const SweepFlags& flags, const std::vector<Cell>& cells) {
   const auto begun = std::chrono::steady_clock::now();
   const auto over = [&] {
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begun;
@@ -234,15 +252,25 @@ bool run_cells(const SweepFlags& flags, const std::vector<Cell>& cells, std::vec
   const auto jobs = static_cast<size_t>(flags.jobs > 0 ? flags.jobs : std::max(cores, 1));
   std::map<pid_t, const Cell*> running;
   size_t next = 0;
-  bool stopped = false;
+  Ran ran;
+  bool& stopped = ran.stopped;
   for (;;) {
     while (!stopped && running.size() < jobs && next < cells.size()) {
       const Cell& c = cells[next++];
       if (!result_of(c).is_null()) continue;
-      running[start(flags, c)] = &c;
+      const int log = claim(c);
+      if (log < 0) {
+        ++ran.elsewhere;
+        continue;
+      }
+      if (!result_of(c).is_null()) {  // another sweep ended it in between
+        close(log);
+        continue;
+      }
+      running[start(flags, c, log)] = &c;
       std::fprintf(stderr, "%zu of %zu: %s\n", next, cells.size(), printable(c.path).c_str());
     }
-    if (running.empty()) return stopped;
+    if (running.empty()) return ran;
     if (!stopped && over()) {
       stopped = true;
       for (const auto& [pid, c] : running) kill(pid, SIGINT);  // they keep a checkpoint
@@ -256,12 +284,12 @@ bool run_cells(const SweepFlags& flags, const std::vector<Cell>& cells, std::vec
     const auto at = running.find(ended);
     if (at == running.end()) continue;
     if (!stopped && (!WIFEXITED(status) || WEXITSTATUS(status) != 0))
-      failed->push_back(at->second->path + ": " + last_line(at->second->path + ".log"));
+      ran.failed.push_back(at->second->path + ": " + last_line(at->second->path + ".log"));
     running.erase(at);
   }
 }
 #else
-bool run_cells(const SweepFlags&, const std::vector<Cell>&, std::vector<std::string>*) {
+Ran run_cells(const SweepFlags&, const std::vector<Cell>&) {
   throw Failure("sweep starts processes, which it cannot on Windows: call train for each run, and report");
 }
 #endif
@@ -295,11 +323,14 @@ Report run_sweep(const SweepFlags& flags) {
   if (flags.out.empty()) throw Usage("--out: give the folder that the runs go to");
   const std::vector<Cell> cells = cells_of(flags);
   try_settings(flags, cells);
-  std::vector<std::string> failed;
-  const bool stopped = run_cells(flags, cells, &failed);
+  const Ran ran = run_cells(flags, cells);
   Table table({"task", "configuration", "runs", "return, IQM", "95% interval", "cost, IQM", "95% interval",
                "limit", "within it"});
-  Json json = {{"runs", cells.size()}, {"stopped", stopped}, {"failed", failed}, {"rows", Json::array()}};
+  Json json = {{"runs", cells.size()},
+               {"stopped", ran.stopped},
+               {"elsewhere", ran.elsewhere},
+               {"failed", ran.failed},
+               {"rows", Json::array()}};
   size_t done = 0;
   for (const SweepRow& r : rows_of(cells)) {
     const size_t n = r.returns.size();
@@ -328,9 +359,10 @@ Report run_sweep(const SweepFlags& flags) {
   replace_file(flags.out + "/sweep.md", table.markdown());
   std::string text = table.text() + format("%zu of %zu runs are done; the table is in ", done, cells.size()) +
                      flags.out + "/sweep.md\n";
-  if (stopped) text += "the time was over: the same command goes on\n";
-  for (const std::string& f : failed) text += "failed: " + f + '\n';
-  if (!failed.empty()) throw Failure(text);
+  if (ran.stopped) text += "the time was over: the same command goes on\n";
+  if (ran.elsewhere) text += format("other sweeps in this folder have taken %zu runs\n", ran.elsewhere);
+  for (const std::string& f : ran.failed) text += "failed: " + f + '\n';
+  if (!ran.failed.empty()) throw Failure(text);
   return {json, text};
 }
 

@@ -32,6 +32,19 @@ before=$(ls -l --time-style=full-iso whole/bandit/crpo/seed-000/policy.rdm)
 "$tool" sweep $flags --out whole > /dev/null 2> err || { cat err; failed=1; }
 [ "$before" = "$(ls -l --time-style=full-iso whole/bandit/crpo/seed-000/policy.rdm)" ] || { echo "a run that was done was done again"; failed=1; }
 
+# Two sweeps in one folder divide the runs, each of which is trained once.
+for each in a b; do
+  # shellcheck disable=SC2086
+  "$tool" sweep $flags --out shared > table.$each 2> err.$each &
+done
+wait
+[ "$(cat err.a err.b | grep -c ' of 8: ')" -eq 8 ] || { echo "two sweeps did not divide 8 runs"; cat err.a err.b; failed=1; }
+for each in a b; do
+  taken=$((8 - $(grep -c ' of 8: ' err.$each)))
+  [ "$taken" -eq 0 ] || grep -q 'other sweeps in this folder have taken' table.$each || grep -q '8 of 8' table.$each || { echo "nothing is said of $taken runs"; failed=1; }
+done
+for run in whole/*/*/seed-00?; do same "$run" "shared/${run#whole/}" 'divided sweep'; done
+
 # One error, before there is a folder.
 for wrong in '--set clip=-1' '--vary horizon=16,0' '--algos ppo_lag,crrpo' '--tasks bandit,nothing' '--seeds 3..1' '--vary horizon'; do
   # shellcheck disable=SC2086
