@@ -723,6 +723,8 @@ CSource c_source(const redman::Policy& policy, const Network& network, const std
            {"ROWS", std::to_string(kTestRows)},
            {"TOLERANCE", literal(tolerance)},
            {"CHECKSUM", format("0x%08xu", tables.checksum())},
+           {"MEAN_ACTION",
+            squashes(network) ? "tanh of the network's mean" : "mean action, clipped to [-1, 1]"},
            {"SQUASH_OPEN", squashes(network) ? "NAME_tanh(" : ""},
            {"SQUASH_CLOSE", squashes(network) ? ")" : ""},
            {"LOWEST", held ? "NAME_low[i]" : "-1.0f"},

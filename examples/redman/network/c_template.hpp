@@ -10,7 +10,7 @@ inline constexpr const char* kHead =
  *   float obs[NAME_obs_dim], BESIDEaction[NAME_action_dim];
  *   CALL;
  *
- * One decision, to be held for RATE: the mean action, clipped to [-1, 1].
+ * One decision, to be held for RATE: the MEAN_ACTION.
  * Every action is NaN when an observation is not finite, or the network overflows on it: test one for
  * action == action before it moves anything.
 HELDSEES *
