@@ -142,10 +142,30 @@ bool knows(const AlgoInfo& algo, const char* key) {
   return false;
 }
 
-bool any_algo_knows(const char* key) {
+// The first algorithm that has such an option; null: none has.
+const AlgoInfo* algo_with(const char* key) {
   for (int32_t i = 0; i < algo_count(); ++i)
-    if (knows(algo_at(i), key)) return true;
-  return false;
+    if (knows(algo_at(i), key)) return &algo_at(i);
+  return nullptr;
+}
+
+// Says of an unknown key that another algorithm has it, where one has.
+void explain_unknown(const AgentConfig& config, const Options& o, const AlgoInfo& algo) {
+  const auto look = [&](const char* key) {
+    if (!key || o.knows(key)) return;
+    if (const AlgoInfo* other = algo_with(key))
+      fail(Code::kNotFound, "%s option %s: %s has no such option; %s has", kOwner, key, algo.name,
+           other->name);
+  };
+  for (int32_t i = 0; i < config.num_options; ++i) look(config.options[i].key);
+  for (const char* line = config.settings; line && *line;) {
+    char key[64];
+    line += std::strspn(line, " \t\r\n");
+    const size_t size = std::strcspn(line, " \t\r\n=");
+    std::snprintf(key, sizeof key, "%.*s", static_cast<int>(std::min(size, sizeof key)), line);
+    look(key);
+    line += std::strcspn(line, "\n");
+  }
 }
 
 // What holds for `owner` holds for the algorithm: it is that one, or for one agent would be.
@@ -186,7 +206,7 @@ void lay_default(Options& o, const AlgoRow& algo, OptionInput in) {
   if (algo.off_policy && for_on_policy(in.key)) return;
   if (!take_owner(algo, in)) return;
   if (!o.knows(in.key)) {
-    if (!any_algo_knows(in.key)) o.set(in, kOwner);  // names the nearest key
+    if (!algo_with(in.key)) o.set(in, kOwner);  // names the nearest key
     return;
   }
   if (in.text)
@@ -227,7 +247,12 @@ Options read_options(const AgentConfig& config, const AlgoRow& row) {
   Options o;
   o.reserve(algo.num_options);
   o.add_table(algo.options, algo.num_options);
-  o.set_all(config.options, config.num_options, config.settings, kOwner);
+  try {
+    o.set_all(config.options, config.num_options, config.settings, kOwner);
+  } catch (const Error& e) {
+    if (e.code == Code::kNotFound) explain_unknown(config, o, algo);
+    throw;
+  }
   for (int32_t i = 0; i < config.num_defaults; ++i) lay_default(o, row, config.defaults[i]);
   lay_preset(o, config, row);
   // A schedule that nobody asked for gives way.

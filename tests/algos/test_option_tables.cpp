@@ -216,6 +216,22 @@ TEST(OptionTables, DefaultsAreNotThePeersDefects) {
   }
 }
 
+// An option of another algorithm is not a spelling mistake.
+TEST(OptionTables, AnErrorNamesTheAlgorithmThatHasTheOption) {
+  AgentSetup s("td3", 1, 1, 4);
+  s.with("Passes", "2");
+  EXPECT_EQ(thrown([&] { read(s); }).code, Code::kNotFound);
+  EXPECT_EQ(thrown([&] { read(s); }).text, "agent option Passes: td3 has no such option; ppo has");
+  s.options.clear();
+  s.config.settings = "\n horizon = 8\n\t replay_rows=10\nmemory = gru:4";
+  EXPECT_EQ(thrown([&] { read(s); }).text, "agent option memory: td3 has no such option; ppo has");
+  s.config.settings = "memry = gru:4";
+  EXPECT_EQ(thrown([&] { read(s); }).text, "agent option memry: unknown");
+  s.config.algo = "ppo";
+  s.config.settings = "replay_rows=10";
+  EXPECT_EQ(thrown([&] { read(s); }).text, "agent option replay_rows: ppo has no such option; td3 has");
+}
+
 TEST(OptionTables, AlgorithmsHaveTheirOwnDefaults) {
   AgentSetup focops("focops", 1, 1, 4), lag("ppo_lag", 1, 1, 4), trpo("trpo", 1, 1, 4);
   EXPECT_STREQ(read(focops).text("multiplier_optimizer"), "sgd");

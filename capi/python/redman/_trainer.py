@@ -121,8 +121,9 @@ def split_options(task: str, algo: str, options: Options) -> tuple[list[tuple[st
 
     for key in options:
         if not is_of_task(key) and folded(key) not in of_algo:
-            raise NotFoundError(f"option {key}: neither task {task} nor algorithm {algo} has it"
-                                f"{nearest(key, sorted(known | of_algo))}")
+            others = [name for name, info in _discovery.algos().items() if folded(key) in {folded(other) for other in info.options}]
+            raise NotFoundError(f"option {key}: neither task {task} nor algorithm {algo} has it" +
+                                (f"; algorithm {others[0]} has" if others else nearest(key, sorted(known | of_algo))))
     return ([(key, plain(key, value)) for key, value in options.items() if is_of_task(key)],
             [(key, plain(key, value)) for key, value in options.items() if folded(key) in of_algo])
 

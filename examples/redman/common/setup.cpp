@@ -150,6 +150,17 @@ void add_cost_limit_flag(CLI::App& command, std::vector<std::string>& limits) {
       ->type_name("[NAME=]LIMIT");
 }
 
+namespace {
+
+// Of a key that is spelled as an algorithm's option, which algorithm has it.
+std::string algo_hint(const std::string& key) {
+  for (int32_t i = 0; i < rdm_algo_count(); ++i)
+    if (has_option(algo_options(i), key)) return std::string("; algorithm ") + algo_at(i).name + " has";
+  return "";
+}
+
+}  // namespace
+
 void apply_sets(const std::vector<std::string>& sets, PoolSettings& pool, AgentSettings* agent) {
   const auto task_table = task_options(find_task(pool.task));
   const auto algo_table = agent ? algo_options(find_algo(agent->algo)) : std::vector<rdm_option_spec>();
@@ -170,7 +181,9 @@ void apply_sets(const std::vector<std::string>& sets, PoolSettings& pool, AgentS
     const std::string owner =
         agent ? "neither task " + pool.task + " nor algorithm " + agent->algo + " has option "
               : "task " + pool.task + " has no option ";
-    throw Usage("--set " + text + ": " + owner + pair.first + nearest_hint(pair.first, keys));
+    const std::string elsewhere = agent ? algo_hint(pair.first) : "";
+    throw Usage("--set " + text + ": " + owner + pair.first +
+                (elsewhere.empty() ? nearest_hint(pair.first, keys) : elsewhere));
   }
 }
 
