@@ -253,38 +253,17 @@ void Agent::need_clouds(const DemoRows& demo) const {
     fail(Code::kArgument, "recording: its points have no colours, which the encoder reads");
 }
 
-namespace {
-
-// The row of the decision before each, of its episode; rows of an episode stand in the order of time.
-Vector<int32_t> rows_before(const DemoRows& demo) {
-  int64_t episodes = 1;
-  for (int32_t i = 0; demo.episode && i < demo.rows; ++i) episodes = std::max(episodes, demo.episode[i] + 1);
-  Vector<int32_t> last(static_cast<size_t>(episodes), -1), before(static_cast<size_t>(demo.rows));
-  for (int32_t i = 0; i < demo.rows; ++i) {
-    int32_t& previous = last[demo.episode ? static_cast<size_t>(demo.episode[i]) : 0];
-    before[static_cast<size_t>(i)] = previous;
-    previous = i;
-  }
-  return before;
-}
-
-}  // namespace
-
 CloneReport Agent::clone(const DemoRows& demo, const CloneOptions& how) {
   const FpMode mode;
   const HostScope scope(resolved_.config.hooks);
   need_idle("clone");
   need_on_policy("clone");
-  if (resolved_.gru.units)
-    fail(Code::kUnsupported,
-         "clone: the agent has a memory (option memory), through which it does not learn from labels yet; "
-         "option "
-         "history=k does");
   need_clouds(demo);
   check_cancel();
   DemoRows rows = demo;
-  const Vector<int32_t> before = resolved_.history > 1 ? rows_before(demo) : Vector<int32_t>();
-  rows.before = before.data();
+  DemoMemory memory;
+  memory.open(resolved_, demo);
+  memory.attach(rows);
   const CloneReport report =
       clone_actor(resolved_, rows, how, regression_, nets_, collector_.normalizer(), cancel_);
   restart_average(nets_);
@@ -315,7 +294,6 @@ PretrainReport Agent::pretrain(const PointRows& clouds, const uint8_t* label, in
 void Agent::set_recording(const DemoRows& demo, uint64_t mark) {
   need_idle("set_recording");
   if (demo.rows > 0) need_on_policy("set_recording");
-  if (demo.rows > 0) need_no_memory("set_recording");
   need_clouds(demo);
   imitation_.set(demo, mark, resolved_.config.hooks);
 }

@@ -158,6 +158,7 @@ void Agent::judge_epoch() {
   begin_epoch(judge(resolved_, run_.stats, run_.totals), epoch_ + 1);
   imitation_.draw(valid_rows());
   if (valid_rows() == 0) return;
+  job_ = imitation_.remember();
   begin_step();
   phase_ = Phase::kStep;
 }

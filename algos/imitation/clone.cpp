@@ -29,17 +29,22 @@ void check(const ResolvedAgentConfig& resolved, const DemoRows& demo, const Clon
   if (demo.rows < 1) fail(Code::kArgument, "recording: it has no rows");
 }
 
-// Rows to learn from first, then those that are held back; returns how many the first are.
+// Items to learn from first, then those that are held back; returns how many the first are.
 int32_t split(const DemoRows& demo, double share, Stream& stream, Vector<int32_t>& order) {
   const int32_t wanted = std::min(demo.rows - 1, static_cast<int32_t>(share * demo.rows));
+  const int32_t items = demo.items();
   int64_t episodes = 1;
   for (int32_t i = 0; demo.episode && i < demo.rows; ++i) episodes = std::max(episodes, demo.episode[i] + 1);
-  Vector<uint8_t> held(static_cast<size_t>(demo.rows), 0);
-  int32_t count = 0;
+  Vector<uint8_t> held(order.size(), 0);
+  int32_t count = 0;  // rows that are held back
   if (episodes < 2) {
-    for (int32_t i = 0; i < demo.rows; ++i) order[static_cast<size_t>(i)] = i;
-    shuffle(stream, order.data(), demo.rows);
-    for (; count < wanted; ++count) held[static_cast<size_t>(order[static_cast<size_t>(count)])] = 1;
+    for (int32_t i = 0; i < items; ++i) order[static_cast<size_t>(i)] = i;
+    shuffle(stream, order.data(), items);
+    for (int32_t i = 0; i < items && count < wanted; ++i) {
+      const int32_t item = order[static_cast<size_t>(i)];
+      if (count + demo.rows_of(item) >= demo.rows) continue;
+      held[static_cast<size_t>(item)] = 1, count += demo.rows_of(item);
+    }
   } else {
     Vector<int32_t> length(static_cast<size_t>(episodes)), drawn(static_cast<size_t>(episodes));
     Vector<uint8_t> chosen(static_cast<size_t>(episodes), 0);
@@ -51,14 +56,28 @@ int32_t split(const DemoRows& demo, double share, Stream& stream, Vector<int32_t
       if (count + length[e] >= demo.rows) continue;
       chosen[e] = 1, count += length[e];
     }
-    for (int32_t i = 0; i < demo.rows; ++i)
-      held[static_cast<size_t>(i)] = chosen[static_cast<size_t>(demo.episode[i])];
+    for (int32_t i = 0; i < items; ++i)
+      held[static_cast<size_t>(i)] = chosen[static_cast<size_t>(demo.episode_of(demo.first_row(i)))];
   }
-  int32_t learned = 0, last = demo.rows - count;
-  const int32_t train = last;
-  for (int32_t i = 0; i < demo.rows; ++i)
+  int32_t learned = 0;
+  const auto train = static_cast<int32_t>(std::count(held.begin(), held.end(), uint8_t{0}));
+  int32_t last = train;
+  for (int32_t i = 0; i < items; ++i)
     order[static_cast<size_t>(held[static_cast<size_t>(i)] ? last++ : learned++)] = i;
   return train;
+}
+
+// How many of `left` listed items make a minibatch of so many rows, or the first that is longer.
+int32_t minibatch(const DemoRows& demo, const int32_t* order, int32_t left, int32_t batch_rows) {
+  int32_t items = 0;
+  for (int32_t rows = 0; items < left && rows < batch_rows; ++items) rows += demo.rows_of(order[items]);
+  return items;
+}
+
+int32_t rows_of(const DemoRows& demo, const int32_t* order, int32_t items) {
+  int32_t rows = 0;
+  for (int32_t i = 0; i < items; ++i) rows += demo.rows_of(order[i]);
+  return rows;
 }
 
 void feed(Normalizer& n, const DemoRows& demo, double count_max) {
@@ -103,7 +122,7 @@ CloneReport clone_actor(const ResolvedAgentConfig& resolved, const DemoRows& giv
   }
   Block& actor = nets.block[Networks::kActor];
   const Backup before(nets, normalizer);
-  Vector<int32_t> order(static_cast<size_t>(demo.rows));
+  Vector<int32_t> order(static_cast<size_t>(demo.items()));
   Vector<float> best(nets.params, nets.params + actor.size), grad(nets.size), m(actor.size), v(actor.size);
   Adam adam;
   adam.size = actor.size, adam.m = m.data(), adam.v = v.data();
@@ -111,26 +130,31 @@ CloneReport clone_actor(const ResolvedAgentConfig& resolved, const DemoRows& giv
   const double dim = static_cast<double>(resolved.action_dim());
   CloneReport out;
   try {
-    out.train_rows = split(demo, how.validation, stream, order);
+    const int32_t learned = split(demo, how.validation, stream, order);
+    const int32_t* const held_back = order.data() + learned;
+    out.train_rows = rows_of(demo, order.data(), learned);
     out.validation_rows = demo.rows - out.train_rows;
     if (how.feed_normalizer) feed(normalizer, demo, resolved.shared.obs_count_max);
+    regression.remember(demo);
     for (int32_t e = 0; e < how.epochs; ++e) {
       const double done = how.epochs > 1 ? static_cast<double>(e) / (how.epochs - 1) : 0;
       const double rate = how.learning_rate + done * (how.learning_rate_end - how.learning_rate);
-      shuffle(stream, order.data(), out.train_rows);
+      shuffle(stream, order.data(), learned);
       double sum = 0;
-      for (int32_t first = 0; first < out.train_rows; first += how.batch_rows) {
+      for (int32_t first = 0, items = 0; first < learned; first += items) {
         cancel.check();
-        const int32_t rows = std::min(how.batch_rows, out.train_rows - first);
+        const int32_t* const listed = order.data() + first;
+        items = minibatch(demo, listed, learned - first, how.batch_rows);
         // the mean over entries of squared errors is 2 / dim of the regression's
-        sum += rows * regression.gradient(demo, order.data() + first, rows, false, 2 / dim, grad.data());
+        sum += rows_of(demo, listed, items) *
+               regression.gradient(demo, listed, items, false, 2 / dim, grad.data());
         adam_step(adam, nets.params, grad.data(), rate, 0);
       }
+      regression.remember(demo);  // also for the next epoch
       const double train = 2 / dim * sum / out.train_rows;
-      const double held =
-          out.validation_rows > 0
-              ? 2 / dim * regression.loss(demo, order.data() + out.train_rows, out.validation_rows, false)
-              : 0;
+      const double held = out.validation_rows > 0
+                              ? 2 / dim * regression.loss(demo, held_back, demo.items() - learned, false)
+                              : 0;
       if (how.train_loss && e < how.capacity) how.train_loss[e] = train;
       if (how.validation_loss && e < how.capacity) how.validation_loss[e] = held;
       out.epochs = e + 1;

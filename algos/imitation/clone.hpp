@@ -4,6 +4,8 @@
 // of it). Whole episodes are held back for validation, since neighbours in time are nearly the same row; with
 // one episode single rows are. Adam on shuffled minibatches, its rate falling linearly from epoch to epoch;
 // the weights with the least validation loss are kept. Same seed, same bytes, for any number of threads.
+// An actor with a GRU learns minibatches of paths (demo_memory.hpp), which have batch_rows rows or a path more; what it
+// remembers before each is found anew in each epoch. Of one episode paths are held back.
 #pragma once
 #include "algos/imitation/regression.hpp"
 #include "base/cancel.hpp"

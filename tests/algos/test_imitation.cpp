@@ -216,7 +216,7 @@ TEST(Imitation, GradientIsThatOfTheTerm) {
     std::vector<float> grad(nets.size, 1.0f), fresh(nets.size);
     const double weight = 0.5;
     const DemoRows rows = lesson.rows();
-    Fit added{&rows, order.data(), 64, true, weight, grad.data(), true};
+    Fit added{&rows, order.data(), 64, 64, true, weight, grad.data(), true};
     while (!regression.advance(added)) {
     }
     const double loss = regression.gradient(rows, order.data(), 64, true, weight, fresh.data());

@@ -75,6 +75,29 @@ class Memory(unittest.TestCase):
         with self.assertRaisesRegex(redman.ArgumentError, "mask"):
             agent.forget("mean", [True])
 
+    def test_it_is_cloned_from_a_recording(self):
+        pool = redman.Pool("recall", num_envs=32, seed=3)
+        pool.reset()
+        shown, cue = redman.Recording(pool), np.zeros(32, np.float32)
+        for _ in range(200):
+            cue = np.where(pool.obs[:, 0] != 0, pool.obs[:, 0], cue)
+            action = (pool.obs[:, 1] * cue)[:, None]
+            with shown.step(pool, label=action):
+                pool.step(action)
+        options = {"memory": "gru:16", "hidden": 16}
+        agent = redman.Agent(pool, algo="ppo", seed=1, options=options)
+        report = agent.clone(shown, epochs=60, patience=0, learning_rate=1e-2, learning_rate_end=1e-4)
+        self.assertLess(report.validation_loss, 0.01)
+        run = redman.train("recall", algo="ppo", steps=2000, envs=4, from_=shown, options={**options, "horizon": 20, "imitation": 0.1},
+                           teach={"clone_epochs": 60, "clone_rate": 1e-2})
+        for policy in (agent.policy(), run.policy):
+            pool.reset()
+            actor, right = policy.actor(pool), 0.0
+            for _ in range(200):
+                pool.step(actor())
+                right += float(pool.reward.sum())
+            self.assertGreaterEqual(right / 320, 0.99)
+
 
 if __name__ == "__main__":
     unittest.main()

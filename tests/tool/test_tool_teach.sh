@@ -77,7 +77,11 @@ grep -q '"show_dynamics' student/config.json || grep -q 'show_dynamics=true' stu
 "$tool" eval --policy student --episodes 4 > out 2>&1 || { cat out; failed=1; }
 refused 1 'field [0-9]* is dynamics.scale.kp \[1\] to the policy, nothing to the task' --task hand_over_safe_finger --set action_delay=0..3 \
   --set show_dynamics=false --from teacher/policy.rdm --dagger 1
-refused 2 'option history=k does' --envs 8 --from demo --demo-decisions 4 --set memory=gru:4
+# shellcheck disable=SC2086
+"$tool" train $small $short --from teacher --dagger 1 --set 'actor_obs=!dynamics.*' --set memory=gru:6 --set imitation=0.1 \
+  --out gru_student > out 2>&1 || { cat out; failed=1; }
+grep -q '^DAgger round 1' out || { echo "no round of the student with a GRU in $(cat out)"; failed=1; }
+"$tool" eval --policy gru_student --episodes 4 > out 2>&1 || { cat out; failed=1; }
 
 head -c 5000 shown.npz > cut.npz
 refused 1 cut.npz --from cut.npz
