@@ -139,6 +139,48 @@ class OfAPool(unittest.TestCase):
             np.testing.assert_array_equal(cloud[:-seen["points"]].reshape(-1, 3), pool.sensors.points[world])
             np.testing.assert_array_equal(cloud[-seen["points"]:], pool.sensors.point_class[world])
 
+    def test_its_button_records_whole_episodes_that_train_takes(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        path = Path(folder.name, "mine.npz")
+        pool = redman.Pool("hand_over_safe_finger", num_envs=2, options={"max_steps": 10})
+        pool.reset()
+        window = self.open(pool, env=1, record=path)
+        page = self.look(window)
+        page.ask(do="speed", times=100)
+        page.ask(do="action", entry=0, value=0.5)
+        pool.step(pool.baseline("zero"))
+        page.until(lambda said: page.scene is not None and said.get("step"))
+        self.assertEqual(page.scene["record"], str(path))
+        page.ask(do="record", on=True)
+        wait(lambda: window._state["record"])
+        for _ in range(29):  # the rest of an episode, which is not whole, and two that are
+            pool.step(pool.baseline("zero"))
+        page.until(lambda said: (said.get("take") or {}).get("episodes") == 2)
+        names = [shape["name"] for shape in page.scene["shapes"]]
+        page.ask(do="grab", world=0, shape=names.index("object"), local=[0, 0, 0], to=[9, 0, 9], newton=1, reach=1)
+        wait(lambda: window._state["push"])
+        for _ in range(10):  # one in which it is pulled
+            pool.step(pool.baseline("zero"))
+        page.until(lambda said: (said.get("take") or {}).get("dropped") == 1)
+        page.ask(do="release")
+        told = page.ask(do="record", on=False)
+        self.assertEqual((told["episodes"], told["dropped"], told["steps"], told["file"]), (2, 1, 20, str(path)))
+        wait(lambda: not window._state["record"])
+        pool.step(pool.baseline("zero"))
+        mine = redman.Recording.load(path)
+        self.assertEqual((mine.info.episodes, len(mine)), (2, 20))
+        np.testing.assert_array_equal(mine.action[:, 0], np.float32(0.5))
+        np.testing.assert_array_equal(mine.truncated, np.arange(20) % 10 == 9)
+        run = redman.train("hand_over_safe_finger", from_=path, steps=400, envs=4, max_steps=10, progress=False)
+        self.assertGreaterEqual(run.env_steps, 400)
+
+    def test_what_no_file_was_given_for_is_not_recorded(self):
+        pool = redman.Pool("ball_run")
+        pool.reset()
+        page = self.look(self.open(pool))
+        self.assertIn("which gave no file", page.ask(do="record", on=True)["error"])
+
     def test_a_paused_page_holds_the_loop_and_steps_it(self):
         pool = redman.Pool("ball_run", options={"max_steps": 1000})
         pool.reset()
@@ -215,15 +257,16 @@ class OfAPool(unittest.TestCase):
                              ({"do": "action", "entry": 9, "value": 0}, "entry")):
             self.assertIn(words, page.ask(**wrong)["error"])
 
-    def test_a_task_that_cannot_be_pulled_says_so_once(self):
-        pool = redman.Pool("ball_run")
-        pool.reset()
-        page = self.look(self.open(pool))
-        page.until(lambda said: "numbers" in said)
-        page.ask(do="grab", world=0, shape=page.scene["moving"][0], local=[0, 0, 0], to=[1, 1, 1], newton=3, reach=0.5)
-        with self.assertWarnsRegex(RuntimeWarning, "push is not possible"):
-            for _ in range(30):
-                pool.step(pool.baseline("zero"))
+    def test_what_cannot_be_pulled_is_said_once_and_stops_no_loop(self):
+        for task, words in (("ball_run", "push is not possible"), ("hand_over_safe_finger", "right_forearm never moves")):
+            pool = redman.Pool(task)
+            pool.reset()
+            page = self.look(self.open(pool))
+            page.until(lambda said: "numbers" in said)
+            page.ask(do="grab", world=0, shape=page.scene["moving"][0], local=[0, 0, 0], to=[1, 1, 1], newton=3, reach=0.5)
+            with self.assertWarnsRegex(RuntimeWarning, words):
+                for _ in range(30):
+                    pool.step(pool.baseline("zero"))
 
     def test_others_get_nothing(self):
         pool = redman.Pool("bandit")

@@ -30,7 +30,9 @@ class Feed:
     """
 
     def __init__(self, pool: Pool, first: int = 0, count: int = 1, *, actor: str = "python", seed: Optional[int] = None,
-                 limits: Optional[Mapping[str, Optional[float]]] = None, own: Optional[Own] = None, shield: str = "") -> None:
+                 limits: Optional[Mapping[str, Optional[float]]] = None, own: Optional[Own] = None, shield: str = "",
+                 record: str = "") -> None:
+        self.record = record  # the file that the page's button writes; "": it has none
         self.pool, self.worlds, self.actor, self.shield = pool, range(first, first + count), actor, shield
         self._seed = pool.seed if seed is None else seed
         self._own = own
@@ -54,7 +56,7 @@ class Feed:
                          "mounted": bool(camera.mount)} for name, camera in pool.task.cameras.items()],
             "costs": [{"name": name, "help": pool.costs[name].help if name in pool.costs else "a cost of your own",
                        "limit": -1 if limit is None else limit} for name, limit in self._limits.items()],
-            "actions": self._actions(), **({"shield": self.shield} if self.shield else {})}
+            "actions": self._actions(), "record": self.record, **({"shield": self.shield} if self.shield else {})}
         return _message(head, np.array([pool.poses(i) for i in self.worlds]).reshape(-1))
 
     def _shape(self, index: int) -> dict[str, Any]:
@@ -80,8 +82,10 @@ class Feed:
         self._gained += reward
         self._summed += cost
 
-    def frame(self, world: int, *, contacts: bool = True, cloud: bool = True, stepped_in: Optional[Array] = None) -> bytes:
-        """The worlds as they are now, as a message; with what one of them touches, and what its cameras see where there is a cloud."""
+    def frame(self, world: int, *, contacts: bool = True, cloud: bool = True, stepped_in: Optional[Array] = None,
+              take: Optional[Mapping[str, Any]] = None) -> bytes:
+        """The worlds as they are now, as a message; with what one of them touches, and what its cameras see where there is a cloud.
+        take: of the recording that runs."""
         pool, at = self.pool, slice(self.worlds.start, self.worlds.stop)
         n = len(self.worlds)
         head: list[Array] = [pool.reward[at], pool.episode_return[at], pool.episode_step[at], np.where(pool.terminated[at], 2, pool.truncated[at]),
@@ -103,7 +107,7 @@ class Feed:
                 points = len(sensors.points[world])
                 parts += [sensors.points[world].reshape(-1), sensors.point_class[world]]
         head_of = {"say": "frame", "world": world - self.worlds.start, "contacts": touched, "points": points}
-        return _message(head_of, np.concatenate(parts))
+        return _message({**head_of, **({} if take is None else {"take": take})}, np.concatenate(parts))
 
 
 class Followers:

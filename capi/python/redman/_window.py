@@ -11,9 +11,11 @@ import threading
 import time
 import warnings
 import weakref
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Mapping, Optional, Sequence, Union
 
+from ._demonstrations import Demonstrations
 from ._discovery import TaskName, task_name
 from ._error import ArgumentError, Error, StateError, UnsupportedError, UsageError
 from ._feed import Feed, follow
@@ -29,8 +31,19 @@ from ._run import Run
 from ._tool import tool_path
 
 MOST_WORLDS = 64
+FilePath = Union[str, "os.PathLike[str]"]
 _PATIENCE = 60.0  # s for the tool to say its address
 _open_ones: weakref.WeakSet[Window] = weakref.WeakSet()
+
+
+@dataclass(frozen=True)
+class Page:
+    """How a window opens, and what its button records."""
+
+    browser: bool = True  # opens by itself
+    port: int = 0
+    paused: bool = False
+    record: Optional[FilePath] = None
 
 
 class Window(Hinted):
@@ -41,16 +54,19 @@ class Window(Hinted):
 
     _hints = {"url": "address", "show": "address, which a browser opens; update() sends the worlds as they are now"}
 
-    def __init__(self, arguments: Sequence[str], *, fed: bool, browser: bool, port: int, keep: Any = None) -> None:
+    def __init__(self, arguments: Sequence[str], *, fed: bool, page: Page, keep: Any = None) -> None:
         tool = tool_path()
         if tool is None:
             raise UnsupportedError("view: windows are made by the command redman, which is not in this package, not on PATH, nor where "
                                    "REDMAN_TOOL says")
-        words = [tool, "view", *(["--feed"] if fed else []), *arguments, "--port", str(port), *(["--open"] if browser else [])]
+        words = [tool, "view", *(["--feed"] if fed else []), *arguments, "--port", str(page.port), *(["--open"] if page.browser else []),
+                 *(["--paused"] if page.paused else [])]
+        if page.record is not None and not fed:
+            words += ["--record", os.fspath(page.record)]
         self._keep = keep  # files that it reads
         self._stop: list[Any] = []
         self._state: dict[str, Any] = {"windows": 0, "plays": True, "speed": 1.0, "steps": 0, "watched": 0, "contacts": False,
-                                       "push": None, "action": None}
+                                       "push": None, "action": None, "record": False}
         self._changed = threading.Condition()
         self._process = subprocess.Popen(words, stdin=subprocess.PIPE if fed else subprocess.DEVNULL, stdout=subprocess.PIPE,
                                          stderr=subprocess.PIPE, start_new_session=True)
@@ -151,15 +167,17 @@ class Window(Hinted):
 class PoolWindow(Window):
     """A window that follows a pool."""
 
-    def __init__(self, pool: Pool, env: int, count: int, actor: str, *, browser: bool, port: int, paused: bool,
+    def __init__(self, pool: Pool, env: int, count: int, actor: str, *, page: Page,
                  limits: Optional[Mapping[str, Optional[float]]] = None) -> None:
-        self._pool, self._env = weakref.ref(pool), env
-        self._feed: Any = Feed(weakref.proxy(pool), env, count, actor=actor, limits=limits)
+        self._pool, self._env, self._record = weakref.ref(pool), env, page.record
+        self._feed: Any = Feed(weakref.proxy(pool), env, count, actor=actor, limits=limits,
+                               record="" if page.record is None else os.fspath(page.record))
+        self._take: Optional[Demonstrations] = None
         self._scene_sent = self._refused = False
         self._used, self._due = 0, 0.0
         self._seconds = float(pool.control_dt) * pool.spec.action_repeat
-        super().__init__(["--paused"] if paused else [], fed=True, browser=browser, port=port)
-        self._stop.append(follow(pool, self._before, self._after))
+        super().__init__([], fed=True, page=page)
+        self._stop += [follow(pool, self._before, self._after), self._end_take]
         if pool._begun:
             self.update()
 
@@ -167,7 +185,7 @@ class PoolWindow(Window):
         """Sends the worlds as they are now."""
         watched = self._env + int(self._state["watched"])
         data = b"" if self._scene_sent else self._feed.scene()
-        data += self._feed.frame(watched, contacts=self._state["contacts"])
+        data += self._feed.frame(watched, contacts=self._state["contacts"], take=None if self._take is None else self._take.told())
         assert self._process.stdin is not None
         try:
             self._process.stdin.write(data)
@@ -180,9 +198,12 @@ class PoolWindow(Window):
         """Waits as long as the page is paused, and for the clock; does what the page asks for."""
         with self._changed:
             while self._looked_at() and not self._state["plays"] and self._state["steps"] <= self._used:
+                self._switch_take()
                 self._changed.wait(0.5)
             state = self._state
+        self._switch_take()
         if not self._looked_at():
+            self._record_step()
             return
         if state["plays"]:
             self._used = state["steps"]
@@ -204,15 +225,43 @@ class PoolWindow(Window):
             world, shape, *force = state["push"]
             try:
                 pool.push(self._env + world, shape, force)
-            except UnsupportedError as error:  # the page does not know
+            except Error as error:  # the page does not know what can be pulled
                 if not self._refused:
                     warnings.warn(f"view: {error}", RuntimeWarning, stacklevel=4)
                 self._refused = True
+            else:
+                if self._take is not None and world == state["watched"]:
+                    self._take.pulled = True
+        self._record_step()
+
+    def _switch_take(self) -> None:
+        """Begins or ends a recording, as the page says."""
+        pool = self._pool()
+        if self._record is None or pool is None or bool(self._state["record"]) == (self._take is not None):
+            return
+        if self._take is None:
+            self._take = Demonstrations(pool, self._record)
+        else:
+            self._end_take()
+        self.update()
+
+    def _end_take(self) -> None:
+        take, self._take = self._take, None
+        if take is not None:
+            take.save()
+
+    def _record_step(self) -> None:
+        pool = self._pool()
+        if self._take is not None and pool is not None:
+            self._take.before(pool, self._env + int(self._state["watched"]))
 
     def _looked_at(self) -> bool:
         return self.windows > 0
 
     def _after(self, reset: bool) -> None:
+        pool = self._pool()
+        if self._take is not None and pool is not None and not reset:
+            self._take.after(pool)
         if self.closed:
             self.close()
         elif self._looked_at() or not self._scene_sent:
@@ -222,13 +271,13 @@ class PoolWindow(Window):
 class Playing:
     """Plays a policy, or a baseline, in a pool of its own, in a thread, while somebody looks; the policy may be replaced."""
 
-    def __init__(self, player: Union[Policy, str], pool: Pool, *, actor: str, browser: bool, port: int, paused: bool,
+    def __init__(self, player: Union[Policy, str], pool: Pool, *, actor: str, page: Page,
                  limits: Optional[Mapping[str, Optional[float]]] = None) -> None:
         self._pool, self._baseline = pool, player if isinstance(player, str) else ""
         self._actor = None if isinstance(player, str) else player.actor(pool)
         self._ends = False
         pool.reset()
-        self.window = PoolWindow(pool, 0, pool.num_envs, actor, browser=browser, port=port, paused=paused, limits=limits)
+        self.window = PoolWindow(pool, 0, pool.num_envs, actor, page=page, limits=limits)
         self.window._stop.insert(0, self.stop)
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()
@@ -264,7 +313,8 @@ def _worlds(pool: Pool, env: int, num_envs: Optional[int]) -> int:
 
 @keywords(aliases={"envs": "num_envs", "n_envs": "num_envs"}, options=True)
 def view(shown: Any, *, policy: Union[None, Policy, str, os.PathLike[str]] = None, num_envs: Optional[int] = None, env: int = 0, seed: int = 0,
-         options: Optional[Options] = None, browser: bool = True, port: int = 0, paused: bool = False) -> Window:
+         options: Optional[Options] = None, browser: bool = True, port: int = 0, paused: bool = False,
+         record: Optional[FilePath] = None) -> Window:
     """Opens a page in the browser on running worlds, and returns the Window, whose address it prints.
 
         window = redman.view(pool)                    # follows pool.step(): look, pause, step, pull, act by hand
@@ -276,13 +326,16 @@ def view(shown: Any, *, policy: Union[None, Policy, str, os.PathLike[str]] = Non
     its page can do: go back, options, the shield, demonstrations. For a task or costs in Python, this process plays it.
 
     policy: what acts in the task, "trained" for the bundled one. num_envs: worlds side by side, at most 64; of a pool, from env on.
+    record: the .npz file that the page's button *record* writes: whole episodes of the watched world as somebody played them,
+    which train(from_=...) takes. Without it worlds of the command write demonstration.npz, and a pool's page has no such button.
     browser: whether to open the browser of the desktop. The page is at 127.0.0.1 alone, behind a random address; see the manual,
     A window on running worlds.
     """
+    page = Page(browser, port, paused, record)
     if isinstance(shown, Pool):
         if policy is not None or options:
             raise UsageError("view: what acts in a pool, and its options, are those of the pool")
-        return PoolWindow(shown, env, _worlds(shown, env, num_envs), "python", browser=browser, port=port, paused=paused)
+        return PoolWindow(shown, env, _worlds(shown, env, num_envs), "python", page=page)
     if isinstance(shown, Run):
         shown = shown.policy
     if isinstance(shown, (str, os.PathLike)) and not is_file("task", shown) and Path(shown).exists():
@@ -291,15 +344,15 @@ def view(shown: Any, *, policy: Union[None, Policy, str, os.PathLike[str]] = Non
     if not isinstance(shown, Policy):
         task = wanted = shown
         if policy is None or isinstance(policy, str) and policy in ("zero", "hold", "random", "demo"):
-            return _of_tool(wanted, [policy or "hold"], num_envs, seed, options, browser, port, paused)
+            return _of_tool(wanted, [policy or "hold"], num_envs, seed, options, page)
         shown = policy_of(policy, wanted)
     elif policy is not None:
         raise UsageError("view: a policy is shown already; give the task and policy=")
-    return _of_policy(shown, task, num_envs, seed, options, browser, port, paused)
+    return _of_policy(shown, task, num_envs, seed, options, page)
 
 
-def _flags(num_envs: Optional[int], seed: int, options: Optional[Mapping[str, Any]], paused: bool) -> list[str]:
-    words = ["--envs", str(num_envs or 1), "--seed", str(seed), *(["--paused"] if paused else [])]
+def _flags(num_envs: Optional[int], seed: int, options: Optional[Mapping[str, Any]]) -> list[str]:
+    words = ["--envs", str(num_envs or 1), "--seed", str(seed)]
     for key, value in named_options(options or {}).items():
         words += ["--set", f"{key}={option_text(key, value)}"]
     return words
@@ -312,32 +365,32 @@ def _knows(task: str) -> bool:
                                           stdin=subprocess.DEVNULL, check=False).returncode == 0
 
 
-def _of_tool(task: TaskName, policies: Sequence[str], num_envs: Optional[int], seed: int, options: Optional[Options], browser: bool,
-             port: int, paused: bool) -> Window:
+def _of_tool(task: TaskName, policies: Sequence[str], num_envs: Optional[int], seed: int, options: Optional[Options],
+             page: Page) -> Window:
     if isinstance(task, (str, os.PathLike)) and is_file("task", task):
         word = os.fspath(task)
     else:
         word = task_name(task)
         if not _knows(word):
-            return _hold(task, num_envs, seed, options, browser, port, paused)
+            return _hold(task, num_envs, seed, options, page)
     words = [part for each in policies for part in ("--policy", each)]
-    return Window(["--task", word, *words, *_flags(num_envs, seed, options, paused)], fed=False, browser=browser, port=port)
+    return Window(["--task", word, *words, *_flags(num_envs, seed, options)], fed=False, page=page)
 
 
-def _hold(task: TaskName, num_envs: Optional[int], seed: int, options: Optional[Options], browser: bool, port: int, paused: bool) -> Window:
+def _hold(task: TaskName, num_envs: Optional[int], seed: int, options: Optional[Options], page: Page) -> Window:
     """Worlds of a task in Python, with the hold action."""
     pool = Pool(task, num_envs or 1, seed, autoreset="off", options=options)
-    return Playing("hold", pool, actor="hold", browser=browser, port=port, paused=paused).window
+    return Playing("hold", pool, actor="hold", page=page).window
 
 
-def _of_policy(policy: Policy, task: Optional[TaskName], num_envs: Optional[int], seed: int, options: Optional[Options], browser: bool,
-               port: int, paused: bool) -> Window:
+def _of_policy(policy: Policy, task: Optional[TaskName], num_envs: Optional[int], seed: int, options: Optional[Options],
+               page: Page) -> Window:
     origin = policy.origin
     name = task_name(task) if task is not None else policy.info.task or (origin.task if origin else "")
     if not name:
         raise ArgumentError("view: say which task: redman.view(task, policy=policy)")
     if task is None and origin is not None and origin.folder is not None and origin.own is None and _same(policy, origin.folder):
-        return Window(["--policy", origin.folder, *_flags(num_envs, seed, options, paused)], fed=False, browser=browser, port=port)
+        return Window(["--policy", origin.folder, *_flags(num_envs, seed, options)], fed=False, page=page)
     laid: dict[str, Any] = dict(origin.options) if origin is not None and origin.task == name else {}
     laid.update(options or {})
     if (origin is None or origin.own is None) and _knows(name):
@@ -345,12 +398,10 @@ def _of_policy(policy: Policy, task: Optional[TaskName], num_envs: Optional[int]
         file = Path(keep.name, "policy.rdm")
         policy.save(file)
         word = "trained" if policy._word == "trained" else str(file)
-        return Window(["--task", name, "--policy", word, *_flags(num_envs, seed, laid, paused)], fed=False, keep=keep,
-                      browser=browser, port=port)
+        return Window(["--task", name, "--policy", word, *_flags(num_envs, seed, laid)], fed=False, keep=keep, page=page)
     pool = Pool(task or name, num_envs or 1, seed, autoreset="off", options=singly(laid))
     limits = None if origin is None else origin.cost_limits
-    return Playing(policy, pool, actor=policy._word, paused=paused, limits=limits, browser=browser,
-                   port=port).window
+    return Playing(policy, pool, actor=policy._word, limits=limits, page=page).window
 
 
 def _same(policy: Policy, folder: str) -> bool:

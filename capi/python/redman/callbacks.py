@@ -222,10 +222,10 @@ class View(Callback):
     def on_begin(self, training: Training) -> None:
         from ._play import singly
         from ._pool import Pool
-        from ._window import Playing
+        from ._window import Page, Playing
         pool = Pool(training.run.task, self._num_envs, training.run.seed, autoreset="off", options=singly(training.run.options))
-        self._playing = Playing(training.agent.policy(), pool, actor=training.run.algo, browser=self._browser, port=self._port,
-                                paused=False, limits=training.run.cost_limits)
+        self._playing = Playing(training.agent.policy(), pool, actor=training.run.algo,
+                                page=Page(self._browser, self._port), limits=training.run.cost_limits)
         self.window = self._playing.window
 
     def on_epoch(self, epoch: Epoch, training: Training) -> None:

@@ -109,6 +109,7 @@ FeedScene::FeedScene(const FeedMessage& message) {
     looks.costs.push_back(
         {text_at(cost, "name", RDM_TEXT_SIZE), text_at(cost, "help"), number_at(cost, "limit", -1, 1e30)});
   actions = texts_at(head, "actions");
+  record = text_at(head, "record");
   if (message.numbers.size() != worlds * looks.bodies.size() * 7)
     throw Failure("poses: they are not as many as the shapes of all worlds");
   poses = message.numbers;
@@ -141,6 +142,9 @@ FeedFrame::FeedFrame(const FeedScene& scene, const FeedMessage& message) {
   }
   contacts.assign(at, at + 6 * count);
   points.assign(at + 6 * count, at + 6 * count + 4 * seen);
+  if (const auto said = message.head.find("take"); said != message.head.end())
+    take = {integer_at(*said, "episodes", 0, kMostExact), integer_at(*said, "dropped", 0, kMostExact),
+            integer_at(*said, "steps", 0, kMostExact), flag_at(*said, "pushed")};
 }
 
 namespace {

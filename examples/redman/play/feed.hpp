@@ -2,11 +2,11 @@
 // --feed` makes a page of them, and `view --feed` shows them while they come.
 //
 // A message is u32 size of what follows, u32 size of a JSON text, the text, and float32 numbers, all little-endian.
-//   scene   JSON: members below; numbers: poses [worlds][shapes][7] of all shapes, position (m) and quaternion (x, y, z, w)
+//   scene   JSON: members below, "record" the file of the page's button, "" without one; numbers: poses [worlds][shapes][7] of all shapes, position (m) and quaternion (x, y, z, w)
 //   frame   JSON: "contacts" and "points", how many, and "world", the one that they are of; numbers: poses [worlds][moving][7]
 //           of the shapes that are not fixed; rows [worlds][6 + 2 costs + actions]: reward, return, step, ended (1 by time, 2 terminated), success, stepped_in, each
 //           cost, its sum over the episode, the action; contacts [contacts][6], position (m), force (N); points [points][3] of
-//           what its cameras see (m), and the class of each [points]
+//           what its cameras see (m), and the class of each [points]. "take", while it records: episodes, dropped, steps, pushed
 #pragma once
 #include <optional>
 #include <string>
@@ -46,6 +46,7 @@ struct FeedScene {
   std::vector<uint8_t> mounted;  // of cameras
   std::vector<float> poses;      // [worlds][shapes][7]
   size_t worlds = 1;
+  std::string record;  // the file that the other program records into; "": it does not
   int32_t obs = 0, max_steps = 0;
 };
 
@@ -64,6 +65,11 @@ struct FeedFrame {
   int32_t world = 0;            // of contacts and points
   std::vector<float> contacts;  // [n][6]
   std::vector<float> points;    // [m][3], then a class for each
+  struct Take {
+    int64_t episodes = 0, dropped = 0, steps = 0;
+    bool pushed = false;  // in the episode that runs
+  };
+  std::optional<Take> take;  // of the recording that runs
 };
 
 // The episode that a file of such messages holds, of one world. Failure, which names the file.

@@ -89,7 +89,7 @@ void Fed::take(FeedMessage&& message) {
     first_ = last() + 1;
     frames_.clear();
     grab_.reset();
-    by_hand_ = false;
+    by_hand_ = records_ = false;
     own_.assign(scene_->actions.size(), 0);
     return;
   }
@@ -125,11 +125,15 @@ Json Fed::push() const {
 }
 
 void Fed::tell() {
-  const Json line = {
-      {"windows", windows_}, {"plays", plays_},
-      {"speed", speed_},     {"steps", asked_},
-      {"watched", watched_}, {"contacts", contacts_},
-      {"push", push()},      {"action", by_hand_ ? numbers_json(own_.data(), own_.size()) : Json()}};
+  const Json line = {{"windows", windows_},
+                     {"plays", plays_},
+                     {"speed", speed_},
+                     {"steps", asked_},
+                     {"watched", watched_},
+                     {"contacts", contacts_},
+                     {"record", records_},
+                     {"push", push()},
+                     {"action", by_hand_ ? numbers_json(own_.data(), own_.size()) : Json()}};
   std::string text = json_text(line);
   if (text == said_) return;
   say_(text);
@@ -188,6 +192,16 @@ Json Fed::command(const Document& asked) {
     grab_ = g;
   } else if (what == "release") {
     grab_.reset();
+  } else if (what == "record") {
+    if (scene_->record.empty())
+      throw Usage("record: these worlds run in another program, which gave no file");
+    records_ = on();
+    tell();
+    const std::optional<FeedFrame::Take>& take = frames_.back().take;
+    if (records_ || !take) return Json::object();
+    Json out = {{"episodes", take->episodes}, {"dropped", take->dropped}};
+    if (take->episodes > 0) out["file"] = scene_->record, out["steps"] = take->steps;
+    return out;
   } else {
     throw Usage(what + ": these worlds run in another program, which does not do that");
   }
@@ -229,7 +243,7 @@ Json Fed::scene() const {
           {"initial", std::vector<float>(scene_->actions.size(), 0)},
           {"options", Json::array()},
           {"actors", {looks.actor}},
-          {"record", ""}};
+          {"record", scene_->record}};
 }
 
 std::string Fed::frame(int64_t since) const {
@@ -250,6 +264,11 @@ std::string Fed::frame(int64_t since) const {
     const FeedFrame::Row& r = frames_[static_cast<size_t>(k - first_)].rows[static_cast<size_t>(watched_)];
     rows.push_back(numbers_json(r.sum.data(), r.sum.size()));
     rows.back().insert(rows.back().begin(), number_json(r.episode_return));
+  }
+  Json take;
+  if (records_ && frames_.back().take) {
+    const FeedFrame::Take& t = *frames_.back().take;
+    take = {{"episodes", t.episodes}, {"dropped", t.dropped}, {"pushed", t.pushed}, {"file", scene_->record}};
   }
   std::vector<float> numbers = f.poses;
   const bool own_world = f.world == watched_;  // else what it touches and sees comes with the next frame
@@ -279,7 +298,8 @@ std::string Fed::frame(int64_t since) const {
                       {"sum", numbers_json(own.sum.data(), own.sum.size())},
                       {"action", by_hand_ ? numbers_json(own_.data(), own_.size())
                                           : numbers_json(own.action.data(), own.action.size())},
-                      {"rows", rows}},
+                      {"rows", rows},
+                      {"take", take}},
                      numbers);
 }
 

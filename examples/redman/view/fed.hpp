@@ -65,7 +65,7 @@ class Fed : public Viewed {
   std::deque<FeedFrame> frames_;
   int64_t first_ = 0, at_ = 0, changes_ = 0, scene_number_ = 0, steps_ = 0, asked_ = 0;
   size_t windows_ = 0;
-  bool plays_ = true, contacts_ = false, by_hand_ = false;
+  bool plays_ = true, contacts_ = false, by_hand_ = false, records_ = false;
   double speed_ = 1;
   int32_t watched_ = 0;
   std::vector<float> own_;

@@ -91,7 +91,8 @@ const redman = window.redman = {};
     costRows($('costs'), world.costs);
     $('curves').replaceChildren(...[null, ...world.costs].map(() => document.createElement('canvas')));
     hand.open(world.actions);
-    for (const id of ['again', 'picture', 'take', 'shield', 'actors', 'stops-box', 'options-card']) $(id).hidden = !!world.fed;
+    for (const id of ['again', 'picture', 'shield', 'actors', 'stops-box', 'options-card']) $(id).hidden = !!world.fed;
+    $('take').hidden = !world.record;
     $('mouse').querySelector('[value=lead]').disabled = !!world.fed;  // what an action does is tried in copies of worlds of this program
     if (world.fed) $('mouse').value = 'pull';
     $('limit-box').hidden = !world.limit_range;

@@ -23,7 +23,7 @@ const char* const kScene =
     "\"color\":[1,2,3]}],"
     "\"cameras\":[{\"name\":\"c\",\"eye\":[1,0,0],\"target\":[0,0,0],\"up\":[0,0,1],\"fov_y\":1,\"mounted\":"
     "false}],"
-    "\"costs\":[{\"name\":\"k\",\"help\":\"\",\"limit\":-1}],\"actions\":[\"x\"]}";
+    "\"costs\":[{\"name\":\"k\",\"help\":\"\",\"limit\":-1}],\"actions\":[\"x\"],\"record\":\"\"}";
 
 std::string read(const std::string& bytes, size_t portion) {
   std::string seen;
