@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <fstream>
 #include <memory>
 #include <thread>
 
@@ -503,6 +504,15 @@ TEST(Policy, ForeignAndNewerFilesAreNamed) {
   put(&big_endian[12], uint32_t{0x04030201});
   EXPECT_EQ(code_of(big_endian), Code::kFormat);
   EXPECT_NE(std::strstr(last_error(), "byte order"), nullptr);
+}
+
+TEST(Policy, ThePageOfFilesSaysWhichVersionsAreRead) {
+  std::ifstream page(RDM_TEST_DATA "/../examples/manual/files.md");
+  const std::string text{std::istreambuf_iterator<char>(page), {}};
+  const size_t row = text.find("| policy, `.rdm` |");
+  ASSERT_NE(row, std::string::npos);
+  const std::string versions = "| 1 to " + std::to_string(kPolicyVersion) + " |";
+  EXPECT_NE(text.substr(row, text.find('\n', row) - row).find(versions), std::string::npos) << versions;
 }
 
 // Version 4: the encoder's section, its weights and its example.
