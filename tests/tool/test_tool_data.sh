@@ -70,10 +70,15 @@ cut = {k: v[:-1] if len(v.shape) and len(v) == len(a["obs"]) else v for k, v in 
 del cut["final_obs"], cut["source"], cut["episode_begin"]
 np.savez("cut.npz", **cut)
 none = {k: v[:2] for k, v in cut.items() if len(v.shape) and len(v) == len(cut["obs"])}
-np.savez("none.npz", **none)' || failed=1
+np.savez("none.npz", **none)
+bad = {k: v.copy() for k, v in a.items()}
+bad["obs"][5, 0] = np.nan
+np.savez("nan.npz", **bad)' || failed=1
   "$tool" data info again.npz --json > info.json || failed=1
   [ "$(one hash info.json)" = "$(one hash two_state.json)" ] || { echo 'numpy saved it again: another hash'; failed=1; }
   "$tool" data info cut.npz > info || failed=1
+  "$tool" data info nan.npz > /dev/null 2> err && { echo 'NaN is taken'; failed=1; }
+  grep -q 'obs: row 5 is not finite' err || { echo 'NaN is not named'; cat err; failed=1; }
   # of no whole episode nothing is known, which is not 0
   "$tool" data info none.npz > info.none && "$tool" data info none.npz --json > none.json || failed=1
   grep -q '^return  *-  *-  *-  *-  *-$' info.none && grep -q '"success_rate":null' none.json ||

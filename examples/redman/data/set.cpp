@@ -1,6 +1,7 @@
 #include "data/set.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <map>
 #include <optional>
@@ -177,6 +178,10 @@ void read_rows(const ArrayIn& in, const ColumnOf<T>& column, const std::vector<s
     const size_t old = rows.size();
     rows.resize(old + width);
     if (width) std::memcpy(rows.data() + old, all.data() + begin + i * size, size);
+    if constexpr (std::is_same_v<T, float>)
+      if (!std::all_of(rows.begin() + static_cast<std::ptrdiff_t>(old), rows.end(),
+                       [](float x) { return std::isfinite(x); }))
+        throw Failure(format("%s: row %zu is not finite", column.name, i));
   }
 }
 
