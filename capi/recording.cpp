@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "base/file.hpp"
+#include "base/hash.hpp"
 #include "capi/handles.hpp"
 #if RDM_WITH_SIM
 #include "env/fields.hpp"
@@ -424,6 +425,40 @@ rdm_result rdm_agent_clone(rdm_agent* a, const rdm_recording* r, const rdm_clone
     out.train_loss = report.train_loss;
     out.validation_loss = report.validation_loss;
     write_struct(io, out, sizeof(rdm_clone_report), "io");
+  });
+}
+
+rdm_result rdm_agent_learn(rdm_agent* a, const rdm_recording* r, int64_t steps, rdm_learn_report* io) {
+  return call_on(a, [&] {
+    need_handle(r);
+    const Use use(r);
+    if (io) check_out(io, sizeof(rdm_learn_report), "io");
+    if (steps < 0 || steps > int64_t{1} << 40)
+      fail(Code::kRange, "steps: %lld is outside [0, 2^40]", static_cast<long long>(steps));
+    const Recording& x = *r->recording;
+    const AgentConfig& config = a->agent->config();
+    demo_rows(x, config);  // dims, layout, count
+    if (x.spec().cost_dim != config.cost_dim)
+      fail(Code::kArgument, "recording: its rows have %d costs, but the agent's have %d", x.spec().cost_dim,
+           config.cost_dim);
+    if (x.rows() < 1) fail(Code::kArgument, "recording: it has no rows");
+    const RecordingRows v = x.view();
+    const LearnRows rows{v.rows, x.spec().cost_dim, v.obs,       v.action, v.reward,
+                         v.cost, v.terminated,      v.truncated, v.episode};
+    const LearnReport report = a->agent->learn(rows, steps);
+    if (!io) return;
+    rdm_learn_report out{};
+    out.steps = report.steps;
+    out.rows = report.rows;
+    out.skipped_gradients = report.skipped;
+    out.loss_policy = report.loss_policy;
+    out.loss_reward_value = report.loss_reward_value;
+    out.loss_cost_value = report.loss_cost_value;
+    out.value_reward = report.value_reward;
+    out.value_cost = report.value_cost;
+    std::copy_n(report.cost, kMaxCosts, out.cost);
+    std::copy_n(report.multiplier, kMaxCosts, out.multiplier);
+    write_struct(io, out, sizeof(rdm_learn_report), "io");
   });
 }
 

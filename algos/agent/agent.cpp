@@ -271,6 +271,30 @@ CloneReport Agent::clone(const DemoRows& demo, const CloneOptions& how) {
   return report;
 }
 
+LearnReport Agent::learn(const LearnRows&, int64_t) {
+  fail(Code::kUnsupported,
+       "learn: %s learns from its own decisions alone; td3_bc_lag learns from recorded rows, and "
+       "rdm_agent_clone copies their actions",
+       resolved_.row->info.name);
+}
+
+void Agent::take_statistics(const LearnRows& rows) {
+  if (!collector_.normalizes()) return;
+  Normalizer& n = collector_.normalizer();
+  normalizer_reset(n);
+  constexpr int64_t kPart = 1 << 16;
+  for (int64_t i = 0; i < rows.rows; i += kPart)
+    normalizer_merge(n, rows.obs + static_cast<size_t>(i) * static_cast<size_t>(n.dim),
+                     static_cast<int32_t>(std::min(kPart, rows.rows - i)), nullptr, 0);
+  normalizer_refresh(n);
+  collector_.measure_usual(rows.obs, static_cast<int32_t>(rows.rows));
+}
+
+void Agent::end_learning() {
+  restart_average(nets_);
+  sampler_ = 0;
+}
+
 PretrainReport Agent::pretrain(const PointRows& clouds, const uint8_t* label, int32_t rows,
                                const PretrainOptions& how) {
   const FpMode mode;

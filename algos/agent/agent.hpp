@@ -33,6 +33,7 @@
 // Work on a minibatch is cut into chunks of fixed size that are reduced in a fixed order, so any number of
 // threads gives the same bytes; and, over blocks of worlds, any number of processes (ranks.hpp).
 #pragma once
+#include "algos/agent/learn.hpp"
 #include "algos/agent/learner.hpp"
 #include "algos/core/schedule.hpp"
 #include "algos/imitation/clone.hpp"
@@ -124,6 +125,9 @@ class Agent {
 
   // Between epochs; Error(kState) inside a horizon.
   CloneReport clone(const DemoRows& demo, const CloneOptions& how);
+  // Gradient steps on recorded rows, without a world. Error(kUnsupported) for an algorithm that learns from its own
+  // decisions alone; Error(kState) inside a horizon.
+  virtual LearnReport learn(const LearnRows& rows, int64_t steps);
   // clouds [rows] in metres, label [rows][points]. Error(kState) inside a horizon or without eyes.
   PretrainReport pretrain(const PointRows& clouds, const uint8_t* label, int32_t rows,
                           const PretrainOptions& how);
@@ -182,6 +186,11 @@ class Agent {
   // policy_loss() is what they minimise then.
   virtual int32_t second_passes() const { return 0; }
   virtual Job begin_second() { return {}; }
+  void need_idle(const char* call) const;  // Error(kState) inside a horizon
+  // For learn: statistics of observations become those of the rows.
+  void take_statistics(const LearnRows& rows);
+  // Likewise: the actor has learned, and policy files are to have it as it is.
+  void end_learning();
   // Multiplier of limited cost i.
   virtual double cost_weight(int32_t) const { return 0; }
   // Copies live options to where they are used.
@@ -258,7 +267,6 @@ class Agent {
   // Error(kArgument) names what differs.
   void need_same_shape(const PolicyView& policy) const;
   uint64_t learned_hash() const;
-  void need_idle(const char* call) const;
   void begin_decision(const char* call);
   // Error(kState) for what another policy sampled.
   void need_generation(const char* call, const Transition& t);

@@ -238,7 +238,7 @@ void OffPolicy::weigh(int32_t rows) {
   double sum = 0;
   for (int32_t k = 1; k < critics_.pairs(); ++k) sum += cost_weight(k - 1);
   const double whole = mix() == Mix::kSum ? 1 + sum : 1, reward = mix() == Mix::kDifference ? 1 - sum : 1;
-  const double share = 1 / (whole * options_.batch_rows);
+  const double share = critics_share(rows) / (whole * options_.batch_rows);
   for (int32_t pair = 0; pair < critics_.pairs(); ++pair) {
     const auto value = static_cast<float>(pair == 0 ? -reward * share : cost_weight(pair - 1) * share);
     const float *one = critics_.out(2 * pair), *other = critics_.out(2 * pair + 1);

@@ -22,6 +22,7 @@
 #include "algos/agent/agent.hpp"
 #include "algos/core/option_tables.hpp"
 #include "algos/lagrange/cost_weighted.hpp"
+#include "algos/off_policy/feed.hpp"
 #include "algos/off_policy/q_critic.hpp"
 #include "algos/off_policy/replay.hpp"
 
@@ -88,7 +89,13 @@ class OffPolicy : public Agent {
   explicit OffPolicy(ResolvedAgentConfig&& resolved);
   void carve(Arena& arena) override;
 
+  // learn.cpp. The weights of costs move every kStepsOfWeights steps, by what the critics make of the first observations
+  // of the recorded episodes.
+  LearnReport learn(const LearnRows& rows, int64_t steps) override;
+  static constexpr int64_t kStepsOfWeights = 100;
+
   Replay& replay() { return replay_; }
+  const Replay& replay() const { return replay_; }
   QCritics& critics() { return critics_; }
 
  protected:
@@ -120,6 +127,10 @@ class OffPolicy : public Agent {
   virtual double learn_actions(const float* seen, int32_t rows, float* slope, float share, float* grad) = 0;
   virtual bool climbs_smaller() const = 0;  // of the reward's pair; else the first
   virtual void end_actor_step() {}
+  // Factor on what the critics say in the actor's loss, by their values of the policy's actions.
+  virtual double critics_share(int32_t) { return 1; }
+  // Limit i as a value of a first observation, once there is a recording.
+  double limit_in_values(int32_t i) const;
   virtual Mix mix() const { return Mix::kSum; }
 
   const OffPolicyOptions& off_options() const { return options_; }
@@ -130,8 +141,15 @@ class OffPolicy : public Agent {
   float* head() { return head_; }
   float* dhead() { return dhead_; }
   static constexpr size_t kRows = kPartRows;
+  // Row i of the part that is learned from, as a row of the memory.
+  int32_t drawn(int32_t i) const { return drawn_[first_ + i]; }
 
  private:
+  void feed(const LearnRows& rows);
+  void learn_steps(int64_t steps);
+  double sum_of_values(int32_t i) const;
+  void judge_starts(JudgedCosts& out);
+  LearnReport learn_report(int64_t steps, int64_t skipped_before);
   enum class Stage {
     kDraw,
     kNext,
@@ -185,6 +203,7 @@ class OffPolicy : public Agent {
     double reward_loss = 0, cost_loss = 0, policy_loss = 0, value = 0, cost_value = 0, kl = 0;
   } sums_;
   int64_t skipped_ = 0;
+  Feed feed_;  // of learn
 };
 
 // Base: an OffPolicy. Rule: of lagrange/, that says what costs weigh.

@@ -10,6 +10,13 @@ namespace {
 constexpr auto kMostOfRow = static_cast<double>(std::numeric_limits<float>::max());
 constexpr auto kMost = static_cast<double>(kMaxReplayed);
 
+float kept_reward(const ReplayRow& row) {
+  return std::clamp(row.reward, -kMaxReplayed, kMaxReplayed);
+}
+float kept_cost(float cost) {
+  return std::min(cost, kMaxReplayed);
+}
+
 }  // namespace
 
 int32_t Replay::rows_of_world(int64_t rows, int32_t num_envs) {
@@ -57,9 +64,8 @@ void Replay::push(int32_t env, const ReplayRow& row) {
   take(env);
   std::memcpy(obs_ + count_of(at) * obs_dim_, row.obs, bytes);
   std::copy_n(row.action, action_dim_, action_ + count_of(at) * action_dim_);
-  for (size_t k = 0; k < num_costs_; ++k)
-    cost_[count_of(at) * num_costs_ + k] = std::min(row.cost[k], kMaxReplayed);
-  reward_[at] = std::clamp(row.reward, -kMaxReplayed, kMaxReplayed);
+  for (size_t k = 0; k < num_costs_; ++k) cost_[count_of(at) * num_costs_ + k] = kept_cost(row.cost[k]);
+  reward_[at] = kept_reward(row);
   discount_[at] = row.discount;
   drawable_[at] = 1;
   ++rows_;
@@ -79,6 +85,15 @@ void Replay::end(int32_t env, const float* obs) {
   follow(env, obs);
   foretold_[env] = 0;
   take(env);
+}
+
+bool Replay::is(int32_t i, const ReplayRow& row, bool drawn) const {
+  if (drawable(i) != drawn || std::memcmp(obs(i), row.obs, obs_dim_ * sizeof(float)) != 0) return false;
+  if (!drawn) return true;
+  bool same = reward_[i] == kept_reward(row) && discount_[i] == row.discount &&
+              std::equal(row.action, row.action + action_dim_, action(i));
+  for (size_t k = 0; k < num_costs_; ++k) same = same && cost(i)[k] == kept_cost(row.cost[k]);
+  return same;
 }
 
 void Replay::clear() {

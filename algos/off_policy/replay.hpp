@@ -60,6 +60,8 @@ class Replay {
   float reward(int32_t i) const { return reward_[i]; }
   float discount(int32_t i) const { return discount_[i]; }
   int32_t capacity() const { return num_envs_ * capacity_; }
+  // Place i has this row: one that can be drawn, or else its observation alone.
+  bool is(int32_t i, const ReplayRow& row, bool drawn) const;
   bool drawable(int32_t i) const { return drawable_[i] != 0; }
   void visit(StateIo& io);
   void after_load();

@@ -372,7 +372,7 @@ WORDS = {
     "rdm_task_camera_at": "Task.cameras", "rdm_task_default_at": "Task.defaults", "rdm_algo_option_at": "Algo.options",
     "rdm_policy_act_points": "Policy.act", "rdm_policy_act_state": "Policy.act",
     "rdm_policy_novelty": "Policy.novelty", "rdm_policy_field_at": "Policy.fields",
-    "rdm_agent_pretrain": "Agent.pretrain", "rdm_agent_clone": "Agent.clone", "rdm_agent_rollout": "Agent.rollout",
+    "rdm_agent_pretrain": "Agent.pretrain", "rdm_agent_clone": "Agent.clone", "rdm_agent_learn": "Agent.learn_from", "rdm_agent_rollout": "Agent.rollout",
     "rdm_agent_set_option": "Agent.set", "rdm_planner_act": "Planner.act", "rdm_import_check": "load_robot(check=True)",
     "rdm_object_create": "Object.create", "rdm_shape_info": "Shape", "rdm_buffers.status": "Pool.status",
     "rdm_result": "Error.code", "RDM_ABI of": "the number of the ABI of"}

@@ -15,6 +15,7 @@ void add_algos(CLI::App& app, Run& run);
 void add_train(CLI::App& app, Run& run);
 void add_sweep(CLI::App& app, Run& run);
 void add_data(CLI::App& app, Run& run);
+void add_learn(CLI::App& app, Run& run);
 void add_eval(CLI::App& app, Run& run);
 void add_baseline(CLI::App& app, Run& run);
 void add_rollout(CLI::App& app, Run& run);

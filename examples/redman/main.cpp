@@ -156,6 +156,7 @@ constexpr Command kCommands[] = {
     {"sweep", add_sweep, kPlay,
      "redman sweep --tasks ball_run,car_run --algos ppo_lag,cpo --seeds 0..4 --out runs/sweep"},
     {"data", add_data, kPlay, "redman data make hand_over_safe_finger --rows 1e5 --out set.npz"},
+    {"learn", add_learn, kPlay, "redman learn --from set.npz --algo td3_bc_lag --steps 1e5 --out policy.rdm"},
     {"eval", add_eval, kPlay, "redman eval --policy runs/first --episodes 100"},
     {"rollout", add_rollout, kPlay, "redman rollout --policy runs/first --episodes 10 --record rollout.npz"},
     {"plan", add_plan, kPlay, "redman plan --task hand_over_safe_finger --method cem --samples 128"},

@@ -176,6 +176,35 @@ typedef struct rdm_clone_report { /* what rdm_agent_clone did */
  * io may be NULL. CANCELLED after rdm_agent_cancel: weights and statistics are as before. */
 RDM_API rdm_result rdm_agent_clone(rdm_agent *a, const rdm_recording *r,
                                    const rdm_clone_config *how, rdm_clone_report *io);
+typedef struct rdm_learn_report { /* what rdm_agent_learn did */
+  uint32_t struct_size;       /* in: bytes */
+  int32_t reserved;           /* 0 */
+  int64_t steps;              /* gradient steps of this call */
+  int64_t rows;               /* count that are learned from */
+  int64_t skipped_gradients;  /* steps left out for a gradient that was not finite */
+  double loss_policy;         /* mean over the steps */
+  double loss_reward_value;   /* mean squared error */
+  double loss_cost_value;     /* likewise, of the costs with limits */
+  double value_reward;        /* mean prediction */
+  double value_cost;          /* likewise */
+  double cost[RDM_MAX_COSTS]; /* what the critics make of the sum of each limited cost over an
+                               * episode of the policy; 0 for others */
+  double multiplier[RDM_MAX_COSTS]; /* of each cost; 0 where there is none */
+} rdm_learn_report;
+/* Learns from recorded rows alone, without a world, by an algorithm with a replay memory, such as
+ * td3_bc_lag: `steps` (0 to 2^40) gradient steps; 0 only fills the memory. The first call with a
+ * recording fills it with its rows: option replay_rows must hold them, and the longest episode once
+ * more for each environment of the agent. It sets the statistics of observations
+ * and takes 8 bytes a row of the host's. Further calls with the same recording continue, with what
+ * worlds added since; another recording replaces both. A row is a decision:
+ * the recording's must span the agent's action_repeat. The last row of an episode without a
+ * termination is not learned from, because what it led to is not in a recording; a time limit is
+ * never a termination. Limits are held against what the critics make of the first observations of
+ * episodes. UNSUPPORTED for other algorithms and for options terminal_cost and cost_signal=raw,
+ * STATE inside a horizon, RANGE and ARGUMENT for rows that do not fit: nothing changes then.
+ * CANCELLED after rdm_agent_cancel: what the finished steps changed stays. io may be NULL. */
+RDM_API rdm_result rdm_agent_learn(rdm_agent *a, const rdm_recording *r, int64_t steps,
+                                   rdm_learn_report *io);
 /* Sets the rows that options `imitation` and `imitation_decay` keep the actor near; obs and label
  * are copied. NULL: none. A state of the agent that was saved with rows can be read only with the
  * same rows set. */

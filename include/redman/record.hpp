@@ -80,6 +80,11 @@ inline rdm_clone_report clone(Agent& agent, const Recording& recording,
   check(rdm_agent_clone(agent.get(), recording.get(), &how, &report));
   return report;
 }
+inline rdm_learn_report learn(Agent& agent, const Recording& recording, int64_t steps) {
+  auto report = sized<rdm_learn_report>();
+  check(rdm_agent_learn(agent.get(), recording.get(), steps, &report));
+  return report;
+}
 
 }  // namespace redman
 #endif

@@ -6,7 +6,7 @@ cd "$(dirname "$0")/../.." || exit 1
 helps=$(mktemp -d)
 trap 'rm -rf "$helps"' EXIT
 failed=0 commands=0
-# Lines of code, joined where a backslash ends them: the page, the subcommand (of bench its own too), the flags.
+# Lines of code, joined where a backslash ends them: the page, the subcommand (of bench and data its own too), the flags.
 awk '
   FNR == 1 { code = 0 }
   /^```/ { code = !code && /^```(sh)?$/; next }
@@ -19,7 +19,7 @@ awk '
       sub(/^[ (]*[^ ]* +/, "", text)
       words = split(text, word, " ")
       command = word[1]
-      if (command == "bench") command = command " " word[2]
+      if (command == "bench" || command == "data") command = command " " word[2]
       flags = ""
       for (i = 2; i <= words; i++) if (word[i] ~ /^--[a-z]/) { sub(/=.*/, "", word[i]); flags = flags " " word[i] }
       print FILENAME "|" command "|" flags

@@ -3102,6 +3102,78 @@ class rdm_clone_report(Structure):
     ]
 
 
+class LearnReport(Record):
+    """what Agent.learn_from did
+
+    steps: gradient steps of this call
+    rows: count that are learned from
+    skipped_gradients: steps left out for a gradient that was not finite
+    loss_policy: mean over the steps
+    loss_reward_value: mean squared error
+    loss_cost_value: likewise, of the costs with limits
+    value_reward: mean prediction
+    value_cost: likewise
+    cost: what the critics make of the sum of each limited cost over an episode of the policy; 0 for others
+    multiplier: of each cost; 0 where there is none
+    """
+
+    steps: int
+    rows: int
+    skipped_gradients: int
+    loss_policy: float
+    loss_reward_value: float
+    loss_cost_value: float
+    value_reward: float
+    value_cost: float
+    cost: tuple[float, ...]
+    multiplier: tuple[float, ...]
+
+
+class rdm_learn_report(Structure):
+    """what rdm_agent_learn did
+
+    struct_size: in: bytes
+    reserved: 0
+    steps: gradient steps of this call
+    rows: count that are learned from
+    skipped_gradients: steps left out for a gradient that was not finite
+    loss_policy: mean over the steps
+    loss_reward_value: mean squared error
+    loss_cost_value: likewise, of the costs with limits
+    value_reward: mean prediction
+    value_cost: likewise
+    cost: what the critics make of the sum of each limited cost over an episode of the policy; 0 for others
+    multiplier: of each cost; 0 where there is none
+    """
+
+    struct_size: int
+    reserved: int
+    steps: int
+    rows: int
+    skipped_gradients: int
+    loss_policy: float
+    loss_reward_value: float
+    loss_cost_value: float
+    value_reward: float
+    value_cost: float
+    cost: Any
+    multiplier: Any
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_int32),
+        ("steps", c_int64),
+        ("rows", c_int64),
+        ("skipped_gradients", c_int64),
+        ("loss_policy", c_double),
+        ("loss_reward_value", c_double),
+        ("loss_cost_value", c_double),
+        ("value_reward", c_double),
+        ("value_cost", c_double),
+        ("cost", c_double * RDM_MAX_COSTS),
+        ("multiplier", c_double * RDM_MAX_COSTS),
+    ]
+
+
 class rdm_ranks(Structure):
     """which processes learn together, and how they exchange messages
 
@@ -4329,6 +4401,7 @@ STRUCTS: dict[str, type[Structure]] = {
     "rdm_recording_rows": rdm_recording_rows,
     "rdm_clone_config": rdm_clone_config,
     "rdm_clone_report": rdm_clone_report,
+    "rdm_learn_report": rdm_learn_report,
     "rdm_ranks": rdm_ranks,
     "rdm_group": rdm_group,
     "rdm_robot_link": rdm_robot_link,
@@ -5762,6 +5835,22 @@ FUNCTIONS: dict[str, Function] = {
         weights with the least validation loss are kept; critics and multipliers stay, and the actor's
         optimiser begins anew. Between epochs of the agent: STATE inside a horizon. how NULL: defaults;
         io may be NULL. CANCELLED after rdm_agent_cancel: weights and statistics are as before.
+        """),
+    "rdm_agent_learn": Function(
+        c_int32, {"a": c_void_p, "r": c_void_p, "steps": c_int64, "io": POINTER(rdm_learn_report)},
+        {}, True,
+        """Learns from recorded rows alone, without a world, by an algorithm with a replay memory, such as
+        td3_bc_lag: `steps` (0 to 2^40) gradient steps; 0 only fills the memory. The first call with a
+        recording fills it with its rows: option replay_rows must hold them, and the longest episode once
+        more for each environment of the agent. It sets the statistics of observations
+        and takes 8 bytes a row of the host's. Further calls with the same recording continue, with what
+        worlds added since; another recording replaces both. A row is a decision:
+        the recording's must span the agent's action_repeat. The last row of an episode without a
+        termination is not learned from, because what it led to is not in a recording; a time limit is
+        never a termination. Limits are held against what the critics make of the first observations of
+        episodes. UNSUPPORTED for other algorithms and for options terminal_cost and cost_signal=raw,
+        STATE inside a horizon, RANGE and ARGUMENT for rows that do not fit: nothing changes then.
+        CANCELLED after rdm_agent_cancel: what the finished steps changed stays. io may be NULL.
         """),
     "rdm_agent_set_recording": Function(
         c_int32, {"a": c_void_p, "r": c_void_p},

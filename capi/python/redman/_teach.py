@@ -72,6 +72,18 @@ class Taught:
             self._run(lib.rdm_agent_clone, recording._handle.value, byref(how), byref(report))
         return CloneReport(report, *losses)
 
+    def learn_from(self, recording: Recording, steps: int) -> _abi.LearnReport:
+        """Learns from a recording alone, without a world: `steps` gradient steps of an algorithm with a replay memory, such as
+        td3_bc_lag; 0 only fills its memory. Option replay_rows must hold the rows, and the longest episode once more for each
+        environment. A row of the recording is one decision of the agent (action_repeat). The first call fills the memory and
+        sets the statistics of observations; further calls with the same recording continue. UnsupportedError for other
+        algorithms."""
+        _is_recording(recording)
+        report = sized(_abi.rdm_learn_report)
+        with self._lock, recording._lock:
+            self._run(lib.rdm_agent_learn, recording._handle.value, int(steps), byref(report))
+        return _abi.LearnReport(report)
+
     @property
     def recording(self) -> Optional[Recording]:
         """The rows that options imitation and imitation_decay keep the actor near, or None. Assignment copies obs and label;
