@@ -68,6 +68,7 @@ struct PolicyTensor {
   const int16_t* millimetres = nullptr;    // in the place of data: points of the example
   const unsigned char* numbers = nullptr;  // in the place of data: their classes, colours
   bool history = false;                    // in the place of data: the entries of a row that a history keeps
+  int32_t of_gru = -1;  // of the GRUs of groups: which of their tensors, as memory_tensor_at counts them
 };
 
 // A layer of all groups as one layer of one network, whose other weights are 0: so whoever reads tensors needs no
@@ -79,11 +80,13 @@ void copy_groups(const PolicyView& v, const PolicyTensor& t, float* out) {
   size_t row = 0, col = 0;  // where the group's own begin
   for (int32_t i = 0; i < v.num_groups; ++i) {
     const ActorGroup& g = v.group[i];
-    const auto rows = static_cast<size_t>(g.shape.layer_out(t.layer)),
-               in = static_cast<size_t>(g.shape.layer_in(t.layer));
+    const bool remembers = last && g.gru.units;
+    const MlpShape layer = remembers ? g.net().head() : g.shape;
+    const int32_t l = remembers ? 0 : t.layer;
+    const auto rows = static_cast<size_t>(layer.layer_out(l)), in = static_cast<size_t>(layer.layer_in(l));
     const auto count = static_cast<size_t>(g.count);
-    const float* from =
-        v.params + g.offset + (t.weights ? g.shape.weight_offset(t.layer) : g.shape.bias_offset(t.layer));
+    const float* from = v.params + g.offset + (remembers ? g.net().head_offset() : 0) +
+                        (t.weights ? layer.weight_offset(l) : layer.bias_offset(l));
     for (size_t r = 0; r < rows; ++r) {
       const size_t at = !last       ? row + r
                         : r < count ? static_cast<size_t>(g.first) + r
@@ -93,11 +96,35 @@ void copy_groups(const PolicyView& v, const PolicyTensor& t, float* out) {
         continue;
       }
       for (size_t k = 0; k < in; ++k) {
-        const size_t to = t.layer > 0 ? col + k : g.columns ? static_cast<size_t>(g.columns[k]) : k;
+        const bool of_row = t.layer == 0 && !remembers;
+        const size_t to = !of_row ? col + k : g.columns ? static_cast<size_t>(g.columns[k]) : k;
         out[at * cols + to] = from[r * in + k];
       }
     }
     row += rows, col += in;
+  }
+}
+
+// The GRUs of all groups as one GRU, likewise: of each gate the units of all groups, one group behind the other.
+void copy_group_memories(const PolicyView& v, const PolicyTensor& t, float* out) {
+  const auto units = static_cast<size_t>(v.gru.units), all = static_cast<size_t>(v.state_dim()),
+             cols = static_cast<size_t>(t.cols);
+  const bool of_row = v.actor.num_hidden == 0;
+  std::fill_n(out, static_cast<size_t>(t.rows) * cols, 0.0f);
+  for (size_t i = 0; i < static_cast<size_t>(v.num_groups); ++i) {
+    const ActorGroup& g = v.group[i];
+    const auto in = static_cast<size_t>(g.gru.in);
+    const float* const own = v.params + g.offset + g.net().gru_offset();
+    for (size_t gate = 0; gate < 3; ++gate)
+      for (size_t r = 0; r < units; ++r) {
+        const size_t from = gate * units + r, to = gate * all + i * units + r;
+        float* const row = out + to * cols;
+        if (t.of_gru == 1) *row = own[g.gru.input_bias_offset() + from];
+        if (t.of_gru == 2) std::copy_n(own + g.gru.state_offset() + from * units, units, row + i * units);
+        if (t.of_gru == 3) *row = own[g.gru.state_bias_offset() + from];
+        for (size_t k = 0; t.of_gru == 0 && k < in; ++k)
+          row[!of_row ? i * in + k : g.columns ? static_cast<size_t>(g.columns[k]) : k] = own[from * in + k];
+      }
   }
 }
 
@@ -113,6 +140,7 @@ void copy_tensor(const PolicyView& v, const PolicyTensor& t, float* out) {
   }
   if (t.millimetres || t.numbers || t.history) return;
   if (t.layer >= 0) return copy_groups(v, t, out);
+  if (t.of_gru >= 0) return copy_group_memories(v, t, out);
   if (!t.part) {
     std::copy(t.data, t.data + size, out);
     return;
@@ -180,6 +208,11 @@ bool memory_tensor_at(const PolicyView& v, int32_t i, PolicyTensor* out) {
                               {"memory.state.bias", at + g.state_bias_offset(), 3 * g.units, 1}};
   if (g.units == 0 || i >= static_cast<int32_t>(std::size(all))) return false;
   *out = all[i];
+  if (v.num_groups == 0) return true;
+  const int32_t units = v.state_dim(), in = v.actor.num_hidden ? v.num_groups * g.in : v.obs_dim();
+  const int32_t cols[] = {in, 1, units, 1};
+  out->data = nullptr, out->part = false, out->of_gru = i;
+  out->rows = 3 * units, out->cols = cols[i];
   return true;
 }
 
@@ -198,7 +231,9 @@ bool tensor_at(const PolicyView& v, int32_t i, PolicyTensor* out) {
     if (v.num_groups) {
       const auto all = [&](int32_t of_one) { return v.num_groups * of_one; };
       const int32_t rows = l == s.num_hidden ? s.out : all(s.layer_out(l)),
-                    cols = l == 0 ? s.in : all(s.layer_in(l));
+                    cols = l == s.num_hidden && v.gru.units ? v.state_dim()
+                           : l == 0                         ? s.in
+                                                            : all(s.layer_in(l));
       *out = {i % 2 ? kBiases[l] : kWeights[l], nullptr, rows, i % 2 ? 1 : cols};
       out->layer = l, out->weights = i % 2 == 0;
       return true;

@@ -261,7 +261,7 @@ void Learner::step_groups(int32_t net, double rate, double bound) {
     const int32_t number = first + i;
     const ActorGroup& g = groups[number];
     const size_t at = nets_->net_offset(net) - block.offset + g.offset, std = static_cast<size_t>(g.first);
-    const size_t size = g.shape.num_params(),
+    const size_t size = g.net().num_params(),
                  stds = !acts || nets_->state_std() ? 0 : static_cast<size_t>(g.count);
     const auto part = [&](size_t from, size_t count) {
       return Adam{count, block.adam.m + from, block.adam.v + from, taken[number]};

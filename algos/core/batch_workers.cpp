@@ -25,7 +25,7 @@ SequenceSpace carve_sequences(Arena& arena, const ResolvedAgentConfig& resolved)
   for (int32_t** list : {&s.env, &s.begin, &s.last}) *list = arena.make<int32_t>(n);
   s.place = arena.make<int32_t>(n ? static_cast<size_t>(resolved.chunk_rows) : 0);
   s.clear = arena.make<uint8_t>(steps);
-  s.h0 = arena.make<float>(n * static_cast<size_t>(resolved.gru.units));
+  s.h0 = arena.make<float>(n * static_cast<size_t>(resolved.state_units()));
   s.out = arena.make<float>(steps * static_cast<size_t>(resolved.actor.out));
   s.dout = arena.make<float>(steps * static_cast<size_t>(resolved.actor.out));
   return s;

@@ -9,8 +9,7 @@
 namespace rdm {
 namespace {
 constexpr const char* kNames[] = {"actor", "reward_critic", "cost_critic"};
-constexpr const char* kGruNames[] = {"memory.input.weight", "memory.input.bias", "memory.state.weight",
-                                     "memory.state.bias"};
+constexpr const char* kGruNames[] = {"input.weight", "input.bias", "state.weight", "state.bias"};
 constexpr int32_t kGruTensors = 4;
 constexpr uint32_t kEyesStream = 3;    // of initial weights, behind those of the three networks
 constexpr uint32_t kGroupsStream = 4;  // of the second group's, and on; the first has the actor's
@@ -87,7 +86,8 @@ Networks carve_networks(Arena& arena, const ResolvedAgentConfig& resolved) {
   return n;
 }
 
-ActorScratch carve_group_scratch(Arena& arena, const Vector<ActorGroup>& groups, int32_t rows) {
+ActorScratch carve_group_scratch(Arena& arena, const Vector<ActorGroup>& groups, int32_t rows,
+                                 bool tangents) {
   ActorScratch s;
   const auto n = static_cast<size_t>(rows);
   s.rows = rows;
@@ -101,11 +101,20 @@ ActorScratch carve_group_scratch(Arena& arena, const Vector<ActorGroup>& groups,
     widest = std::max(widest, group.shape.out);
   }
   s.part = arena.make<float>(n * static_cast<size_t>(widest));
+  const auto units = static_cast<size_t>(groups[0].gru.units);
+  if (units == 0) return s;
+  s.group_memory = arena.make<RecurrentScratch>(groups.size());
+  for (size_t g = 0; g < groups.size(); ++g) {
+    const RecurrentScratch own = carve_recurrent_scratch(arena, groups[g].net(), rows, tangents);
+    if (s.group_memory) s.group_memory[g] = own;
+  }
+  s.part_state = arena.make<float>(n * units);
+  s.memory.h = arena.make<float>(n * units * groups.size());
   return s;
 }
 
 ActorScratch carve_actor_scratch(Arena& arena, const ResolvedAgentConfig& resolved, int32_t rows) {
-  if (resolved.num_groups() > 0) return carve_group_scratch(arena, resolved.groups, rows);
+  if (resolved.num_groups() > 0) return carve_group_scratch(arena, resolved.groups, rows, resolved.trusts());
   ActorScratch s;
   const auto n = static_cast<size_t>(rows);
   static_cast<MlpScratch&>(s) = carve_mlp_scratch(arena, resolved.actor, rows);
@@ -182,10 +191,68 @@ void Networks::backward_critics(int32_t i, const float* x, int32_t rows, const A
 void Networks::forward_memory_with(const float* weights, const float* x, const MemorySteps& m,
                                    const ActorScratch& scratch, float* y) const {
   const int32_t rows = m.steps * m.rows;
+  if (num_groups) {
+    for (int32_t i = 0; i < num_groups; ++i) forward_group_memory(weights, i, x, m, scratch, y);
+    if (state_std()) bound_std(rows, y);
+    return;
+  }
   if (columns[kActor]) pick_columns(x, rows, obs_dim, columns[kActor], shape[kActor].in, scratch.picked);
   recurrent_forward(actor(), weights, seen(kActor, x, scratch), m.steps, m.rows, m.h0, m.clear, scratch,
                     scratch.memory, y);
   if (state_std()) bound_std(rows, y);
+}
+
+void Networks::forward_group_memory(const float* weights, int32_t i, const float* x, const MemorySteps& m,
+                                    const ActorScratch& scratch, float* y) const {
+  const ActorGroup& g = group[i];
+  const MlpScratch& own = scratch.group[i];
+  const RecurrentScratch& memory = scratch.group_memory[i];
+  const int32_t rows = m.steps * m.rows;
+  const auto units = static_cast<size_t>(g.gru.units), all = units * static_cast<size_t>(num_groups),
+             at = units * static_cast<size_t>(i);
+  if (g.columns) pick_columns(x, rows, obs_dim, g.columns, g.shape.in, own.picked);
+  take_states(m.h0, all, at, units, m.rows, scratch.part_state);
+  recurrent_forward(g.net(), weights + g.offset, g.columns ? own.picked : x, m.steps, m.rows,
+                    scratch.part_state, m.clear, own, memory, scratch.part);
+  give_states(memory.h, all, at, units, rows, scratch.memory.h);
+  spread_outputs(g, scratch.part, rows, static_cast<size_t>(shape[kActor].out), y);
+}
+
+void Networks::backward_memory(const float* x, const MemorySteps& m, const ActorScratch& scratch,
+                               const float* dy, float* grad) const {
+  float* const to = grad + net_offset(kActor);
+  if (!num_groups)
+    return recurrent_backward(actor(), net(kActor), seen(kActor, x, scratch), m.steps, m.rows, m.clear,
+                              scratch, scratch.memory, dy, to);
+  for (int32_t i = 0; i < num_groups; ++i) {
+    const ActorGroup& g = group[i];
+    const MlpScratch& own = scratch.group[i];
+    if (!learns(i)) {
+      std::fill_n(to + g.offset, g.net().num_params(), 0.0f);
+      continue;
+    }
+    gather_outputs(g, dy, m.steps * m.rows, static_cast<size_t>(shape[kActor].out), scratch.part);
+    recurrent_backward(g.net(), net(kActor) + g.offset, g.columns ? own.picked : x, m.steps, m.rows, m.clear,
+                       own, scratch.group_memory[i], scratch.part, to + g.offset);
+  }
+}
+
+void Networks::tangent_memory(const float* direction, const float* x, const MemorySteps& m,
+                              const ActorScratch& scratch, float* dy) const {
+  if (!num_groups)
+    return recurrent_tangent(actor(), net(kActor), direction, seen(kActor, x, scratch), m.steps, m.rows,
+                             m.clear, scratch, scratch.memory, dy);
+  const int32_t rows = m.steps * m.rows;
+  for (int32_t i = 0; i < num_groups; ++i) {
+    const ActorGroup& g = group[i];
+    const MlpScratch& own = scratch.group[i];
+    if (learns(i))
+      recurrent_tangent(g.net(), net(kActor) + g.offset, direction + g.offset, g.columns ? own.picked : x,
+                        m.steps, m.rows, m.clear, own, scratch.group_memory[i], scratch.part);
+    else
+      std::fill_n(scratch.part, static_cast<size_t>(rows) * static_cast<size_t>(g.shape.out), 0.0f);
+    spread_outputs(g, scratch.part, rows, static_cast<size_t>(shape[kActor].out), dy);
+  }
 }
 
 void Networks::backward_actor(const float* x, const PointRows& clouds, int32_t rows,
@@ -195,7 +262,7 @@ void Networks::backward_actor(const float* x, const PointRows& clouds, int32_t r
     const MlpScratch& own = scratch.group[i];
     float* const to = grad + net_offset(kActor) + g.offset;
     if (!learns(i)) {
-      std::fill_n(to, g.shape.num_params(), 0.0f);
+      std::fill_n(to, g.net().num_params(), 0.0f);
       continue;
     }
     gather_outputs(g, dy, rows, static_cast<size_t>(shape[kActor].out), scratch.part);
@@ -253,7 +320,7 @@ void init_networks(const Networks& n, const ResolvedAgentConfig& resolved) {
   for (int32_t g = 0; g < n.num_groups; ++g) {
     const uint32_t number = g == 0 ? 0 : kGroupsStream + static_cast<uint32_t>(g) - 1;
     Stream stream(resolved.config.seed, number, Purpose::kInit);
-    mlp_init(n.group[g].shape, stream, last_scale, n.net(Networks::kActor) + n.group[g].offset);
+    recurrent_init(n.group[g].net(), stream, last_scale, n.net(Networks::kActor) + n.group[g].offset);
   }
   if (n.eyes.points) {
     Stream stream(resolved.config.seed, kEyesStream, Purpose::kInit);
@@ -268,16 +335,14 @@ void init_networks(const Networks& n, const ResolvedAgentConfig& resolved) {
       log_std[j] = static_cast<float>(elementary::log(resolved.shared.init_std));
     }
   };
-  const RecurrentShape actor = n.actor();
-  const MlpShape head = actor.head();
-  if (!n.num_groups)
-    first_actions(n.net(Networks::kActor) + (n.gru.units ? actor.head_offset() + head.bias_offset(0)
-                                                         : actor.mlp.bias_offset(actor.mlp.num_hidden)),
-                  0, n.action_dim);
+  const auto last_bias = [](const RecurrentShape& s) {
+    return s.gru.units ? s.head_offset() + s.head().bias_offset(0) : s.mlp.bias_offset(s.mlp.num_hidden);
+  };
+  float* const actor = n.net(Networks::kActor);
+  if (!n.num_groups) first_actions(actor + last_bias(n.actor()), 0, n.action_dim);
   for (int32_t i = 0; i < n.num_groups; ++i) {
     const ActorGroup& g = n.group[i];
-    first_actions(n.net(Networks::kActor) + g.offset + g.shape.bias_offset(g.shape.num_hidden), g.first,
-                  g.count);
+    first_actions(actor + g.offset + last_bias(g.net()), g.first, g.count);
   }
 }
 
@@ -343,7 +408,8 @@ int32_t Networks::num_tensors() const {
   for (int32_t g = 0; g < num_groups; ++g) tensors += 2 * group[g].shape.num_layers();
   for (int32_t i = num_groups ? 1 : 0; i < count; ++i)
     tensors += 2 * shape[i].num_layers() * (i ? num_critics : 1);
-  return tensors + (gru.units ? kGruTensors : 0) + (eyes.points ? 2 * eyes.mlp.num_layers() : 0);
+  return tensors + (gru.units ? kGruTensors * std::max(num_groups, 1) : 0) +
+         (eyes.points ? 2 * eyes.mlp.num_layers() : 0);
 }
 
 void Networks::visit(StateIo& io) {
@@ -359,7 +425,7 @@ void Networks::visit(StateIo& io) {
     if (!num_groups) return recurrent_bound(actor(), From{list, at}, input_of(list, at));
     double most = 0;
     for (int32_t g = 0; g < num_groups; ++g)
-      most = std::max(most, mlp_bound(group[g].shape, From{list, at + group[g].offset}, input_bound));
+      most = std::max(most, recurrent_bound(group[g].net(), From{list, at + group[g].offset}, input_bound));
     return most;
   };
   const auto critic_bound = [&](int32_t i) {
@@ -398,10 +464,16 @@ bool find_tensor(const Networks& n, int32_t index, char* name, TensorInfo* out) 
     *out = {name, rows, cols, data};
     return true;
   };
-  const auto layer = [&](const char* net, const MlpShape& s, float* params) {
+  const auto layer = [&](const char* net, const RecurrentShape& shape, float* params) {
+    const MlpShape& s = shape.mlp;
     const int32_t l = index / 2;
     const bool weight = index % 2 == 0;
     std::snprintf(name, kTensorNameSize, "%s.%d.%s", net, l, weight ? "weight" : "bias");
+    if (shape.gru.units && l == s.num_hidden) {
+      const MlpShape head = shape.head();
+      return set(head.out, weight ? head.in : 1,
+                 params + shape.head_offset() + (weight ? 0 : head.bias_offset(0)));
+    }
     return set(s.layer_out(l), weight ? s.layer_in(l) : 1,
                params + (weight ? s.weight_offset(l) : s.bias_offset(l)));
   };
@@ -416,7 +488,7 @@ bool find_tensor(const Networks& n, int32_t index, char* name, TensorInfo* out) 
       if (index < tensors) {
         char net[kGroupNameSize + 16];
         std::snprintf(net, sizeof net, "%s.%s", kNames[i], groups[g].name);
-        return layer(net, s, n.net(i) + groups[g].offset);
+        return layer(net, groups[g].net(), n.net(i) + groups[g].offset);
       }
       index -= tensors;
     }
@@ -434,24 +506,21 @@ bool find_tensor(const Networks& n, int32_t index, char* name, TensorInfo* out) 
       index -= tensors;
       continue;
     }
-    if (i == Networks::kActor && n.gru.units && index / 2 == s.num_hidden) {
-      const MlpShape head = n.actor().head();
-      const bool weight = index % 2 == 0;
-      std::snprintf(name, kTensorNameSize, "actor.%d.%s", s.num_hidden, weight ? "weight" : "bias");
-      float* const at = n.net(i) + n.actor().head_offset();
-      return set(head.out, weight ? head.in : 1, at + (weight ? 0 : head.bias_offset(0)));
-    }
-    return layer(kNames[i], s, n.net(i));
+    return layer(kNames[i], {s, i == Networks::kActor ? n.gru : GruShape()}, n.net(i));
   }
-  if (n.gru.units && index < kGruTensors) {
-    const GruShape& g = n.gru;
-    float* const at = n.net(Networks::kActor) + n.actor().gru_offset();
+  const auto gru = [&](const RecurrentShape& shape, const char* dot, const char* owner, float* params) {
+    const GruShape& g = shape.gru;
     const size_t offset[] = {0, g.input_bias_offset(), g.state_offset(), g.state_bias_offset()};
     const int32_t cols[] = {g.in, 1, g.units, 1};
-    std::snprintf(name, kTensorNameSize, "%s", kGruNames[index]);
-    return set(3 * g.units, cols[index], at + offset[index]);
-  }
-  if (n.eyes.points && index < 2 * n.eyes.mlp.num_layers()) return layer("encoder", n.eyes.mlp, n.eyes_net());
+    std::snprintf(name, kTensorNameSize, "memory%s%s.%s", dot, owner, kGruNames[index]);
+    return set(3 * g.units, cols[index], params + shape.gru_offset() + offset[index]);
+  };
+  float* const actor = n.net(Networks::kActor);
+  for (int32_t g = 0; n.gru.units && g < n.num_groups; ++g, index -= kGruTensors)
+    if (index < kGruTensors) return gru(n.group[g].net(), ".", n.group[g].name, actor + n.group[g].offset);
+  if (n.gru.units && !n.num_groups && index < kGruTensors) return gru(n.actor(), "", "", actor);
+  if (n.eyes.points && index < 2 * n.eyes.mlp.num_layers())
+    return layer("encoder", {n.eyes.mlp, GruShape()}, n.eyes_net());
   return false;
 }
 

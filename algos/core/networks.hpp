@@ -7,8 +7,8 @@
 // An actor in groups (option groups) is a network for each, one behind the other in the same block; the log deviations
 // before them are in the order of the actions. A gradient or a step may be of one group alone: `focus`.
 //
-// With option memory a GRU stands before the actor's last layer: its state comes from whoever runs it. With option
-// history the rows are stacked ones (rollout/memory.hpp).
+// With option memory a GRU stands before the actor's last layer, or that of each group: its state comes from whoever
+// runs it, those of groups one behind the other. With option history the rows are stacked ones (rollout/memory.hpp).
 //
 // Critics of an algorithm whose groups have their own stand likewise in the block of their kind.
 //
@@ -31,21 +31,24 @@ struct Block {
 // Scratch of an actor: what its eyes need too. picked: the rows that its network sees, with features.
 struct ActorScratch : MlpScratch {
   PointNetScratch eyes;
-  RecurrentScratch memory;      // of an actor with a GRU
-  int32_t* winner = nullptr;    // [rows][features]
-  float* dfeatures = nullptr;   // [rows][features]
-  MlpScratch* group = nullptr;  // [groups], of an actor in groups
-  float* part = nullptr;        // [rows][widest output of a group]
+  RecurrentScratch memory;                   // of an actor with a GRU; of groups h alone, the states of all
+  int32_t* winner = nullptr;                 // [rows][features]
+  float* dfeatures = nullptr;                // [rows][features]
+  MlpScratch* group = nullptr;               // [groups], of an actor in groups
+  float* part = nullptr;                     // [rows][widest output of a group]
+  RecurrentScratch* group_memory = nullptr;  // [groups], where they have GRUs
+  float* part_state = nullptr;               // [rows][units] of one
 };
 // Steps of rows that an actor with a GRU runs over; zeros as h0 and no clears begin and keep its memory.
 struct MemorySteps {
   int32_t steps = 1, rows = 0;
-  const float* h0 = nullptr;       // [rows][units]
+  const float* h0 = nullptr;       // [rows][units of all groups]
   const uint8_t* clear = nullptr;  // [steps][rows]
 };
 ActorScratch carve_actor_scratch(Arena& arena, const ResolvedAgentConfig& resolved, int32_t rows);
 // Of networks in groups.
-ActorScratch carve_group_scratch(Arena& arena, const Vector<ActorGroup>& groups, int32_t rows);
+ActorScratch carve_group_scratch(Arena& arena, const Vector<ActorGroup>& groups, int32_t rows,
+                                 bool tangents = false);
 
 // Order: actor (log_std padded to 16 with zeros, then the network, then its eyes), reward critic, cost
 // critic.
@@ -55,7 +58,7 @@ struct Networks {
   const int32_t* columns[3] = {};     // [shape.in] entries of a row that the network sees; null: all
   int32_t obs_dim = 0;                // of a row, a stacked one
   int32_t history_inputs = 0;         // of it, at its end
-  GruShape gru;                       // of the actor; units 0: none
+  GruShape gru;                       // of the actor, of groups that of each has as many units; units 0: none
   const ActorGroup* group = nullptr;  // [num_groups] of the actor; none: it is one network
   int32_t num_groups = 0;
   int64_t* group_steps = nullptr;  // [num_groups] of Adam
@@ -125,8 +128,8 @@ struct Networks {
                     float* y) const {
     forward_actor_with(kept_actor(), x, clouds, rows, scratch, y);
   }
-  // The same of an actor with a GRU: x [steps][rows][obs_dim], y [steps][rows][out]; its states [steps][rows][units]
-  // are in scratch.memory.h.
+  // The same of an actor with GRUs: x [steps][rows][obs_dim], y [steps][rows][out]; its states [steps][rows][units of
+  // all groups] are in scratch.memory.h.
   void forward_memory(const float* x, const MemorySteps& m, const ActorScratch& scratch, float* y) const {
     forward_memory_with(net(kActor), x, m, scratch, y);
   }
@@ -135,15 +138,9 @@ struct Networks {
     forward_memory_with(kept_actor(), x, m, scratch, y);
   }
   void backward_memory(const float* x, const MemorySteps& m, const ActorScratch& scratch, const float* dy,
-                       float* grad) const {
-    recurrent_backward(actor(), net(kActor), seen(kActor, x, scratch), m.steps, m.rows, m.clear, scratch,
-                       scratch.memory, dy, grad + net_offset(kActor));
-  }
+                       float* grad) const;
   void tangent_memory(const float* direction, const float* x, const MemorySteps& m,
-                      const ActorScratch& scratch, float* dy) const {
-    recurrent_tangent(actor(), net(kActor), direction, seen(kActor, x, scratch), m.steps, m.rows, m.clear,
-                      scratch, scratch.memory, dy);
-  }
+                      const ActorScratch& scratch, float* dy) const;
   void backward_actor(const float* x, const PointRows& clouds, int32_t rows, const ActorScratch& scratch,
                       const float* dy, float* grad) const;
   void tangent_actor(const float* direction, const float* x, const PointRows& clouds, int32_t rows,
@@ -182,6 +179,8 @@ struct Networks {
                       float* y) const;
   void forward_memory_with(const float* weights, const float* x, const MemorySteps& m,
                            const ActorScratch& scratch, float* y) const;
+  void forward_group_memory(const float* weights, int32_t i, const float* x, const MemorySteps& m,
+                            const ActorScratch& scratch, float* y) const;
   const float* seen(int32_t i, const float* x, const MlpScratch& scratch) const {
     return columns[i] ? scratch.picked : x;
   }

@@ -176,9 +176,25 @@ Vector<int32_t> both(const Vector<int32_t>& own, const Vector<int32_t>& seen, co
   return out;
 }
 
+// "gru:64"; blanks are skipped. 0: none.
+int32_t parse_units(const char* text) {
+  const char* p = text;
+  while (*p == ' ') ++p;
+  if (!*p) return 0;
+  char* end = nullptr;
+  const bool known = std::strncmp(p, "gru:", 4) == 0;
+  const long units = known ? std::strtol(p + 4, &end, 10) : 0;
+  while (known && *end == ' ') ++end;
+  if (!known || end == p + 4 || *end)
+    fail(Code::kArgument, "memory: '%s' is not a memory; write gru:64 for a GRU of 64 units",
+         Quoted(text).text);
+  check_range("memory: the number of units", units, 1, kMaxUnits);
+  return static_cast<int32_t>(units);
+}
+
 // What the actor's networks are in groups, each of which sees its fields as far as actor_obs has them; one group is one
 // network.
-void resolve_groups(ResolvedAgentConfig& resolved) {
+void resolve_groups(ResolvedAgentConfig& resolved, int32_t units) {
   if (!kGroupRows.known_to(resolved.options)) return;
   const AgentConfig& c = resolved.config;
   const SharedOptions& o = resolved.shared;
@@ -211,7 +227,8 @@ void resolve_groups(ResolvedAgentConfig& resolved) {
                           s.columns.empty() ? c.obs_dim : static_cast<int32_t>(s.columns.size()),
                           o.state_std ? 2 * s.count : s.count);
     check_mlp_shape(g.shape);
-    offset += g.shape.num_params();
+    g.gru = with_gru(g.shape, units).gru;
+    offset += g.net().num_params();
   }
   resolved.group_specs = std::move(specs);
 }
@@ -250,31 +267,20 @@ void resolve_history(ResolvedAgentConfig& resolved) {
     }
 }
 
-// "gru:64"; blanks are skipped.
-void resolve_memory(ResolvedAgentConfig& resolved) {
-  const SharedOptions& o = resolved.shared;
-  const char* p = o.memory;
-  while (*p == ' ') ++p;
-  if (*p) {
-    char* end = nullptr;
-    const bool known = std::strncmp(p, "gru:", 4) == 0;
-    const long units = known ? std::strtol(p + 4, &end, 10) : 0;
-    while (known && *end == ' ') ++end;
-    if (!known || end == p + 4 || *end)
-      fail(Code::kArgument, "memory: '%s' is not a memory; write gru:64 for a GRU of 64 units",
-           Quoted(o.memory).text);
-    check_range("memory: the number of units", units, 1, kMaxUnits);
-    resolved.gru = with_gru(resolved.actor, static_cast<int32_t>(units)).gru;
-  }
+// Units of a memory, 0: none.
+void resolve_memory(ResolvedAgentConfig& resolved, int32_t units) {
+  resolved.gru = with_gru(resolved.actor, units).gru;
   if (!resolved.remembers()) return;
-  if (!resolved.groups.empty())
-    fail(Code::kUnsupported, "%s: it cannot be combined with several groups yet; groups=all has one network",
-         resolved.gru.units ? "memory" : "history");
-  if (resolved.gru.units && resolved.history > 1)
+  if (units && resolved.history > 1)
     fail(Code::kUnsupported, "memory: it cannot be combined with option history; choose one of the two");
+  if (!units && !resolved.groups.empty())
+    fail(Code::kUnsupported,
+         "history: it cannot be combined with several groups yet; groups=all has one network, and option "
+         "memory "
+         "works with groups");
   if (resolved.sees())
     fail(Code::kUnsupported, "%s: it cannot be combined with option encoder yet",
-         resolved.gru.units ? "memory" : "history");
+         units ? "memory" : "history");
 }
 
 void resolve_networks(ResolvedAgentConfig& resolved) {
@@ -288,7 +294,8 @@ void resolve_networks(ResolvedAgentConfig& resolved) {
   };
   resolved.actor_columns = columns("actor_obs", o.actor_obs);
   resolved.critic_columns = columns("critic_obs", o.critic_obs);
-  resolve_groups(resolved);
+  const int32_t units = parse_units(o.memory);
+  resolve_groups(resolved, units);
   resolve_history(resolved);
   const int32_t actor_in = inputs(resolved.actor_columns), critic_in = inputs(resolved.critic_columns);
   resolve_eyes(resolved);
@@ -298,7 +305,7 @@ void resolve_networks(ResolvedAgentConfig& resolved) {
   };
   resolved.actor = parse_shape("hidden", o.hidden, o.activation, actor_in + resolved.eyes.features(),
                                o.state_std ? 2 * c.action_dim : c.action_dim);
-  resolve_memory(resolved);
+  resolve_memory(resolved, units);
   const int32_t costs = std::max(resolved.num_limited, 1);
   for (const GroupSpec& s : resolved.critic_specs) {
     const auto add = [&](Vector<ActorGroup>& critics, int32_t outputs) {

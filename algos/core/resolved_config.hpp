@@ -33,7 +33,7 @@ struct ResolvedAgentConfig {
   // decisions before it, newest first, history_width numbers each, history - 1 times.
   int32_t history = 1, history_width = 0;
   Vector<int32_t> history_columns;
-  GruShape gru;  // of the actor, before its last layer; units 0: none
+  GruShape gru;  // of the actor, before its last layer; units 0: none; of each group so many
   // Entries of the stacked row that these see, ascending; empty: all.
   Vector<int32_t> actor_columns, critic_columns;
   // The actor's groups, where it has several (option groups), and what each sees; none: it is one network. The shape
@@ -76,7 +76,8 @@ struct ResolvedAgentConfig {
   // Of a stacked row, and of what is remembered of a world.
   int32_t history_inputs() const { return (history - 1) * history_width; }
   size_t seen_dim() const { return obs_dim() + static_cast<size_t>(history_inputs()); }
-  size_t state_dim() const { return static_cast<size_t>(gru.units + history_inputs()); }
+  int32_t state_units() const { return gru.units * std::max(1, num_groups()); }  // of all groups
+  size_t state_dim() const { return static_cast<size_t>(state_units() + history_inputs()); }
   bool remembers() const { return state_dim() > 0; }
   int32_t memory_chunk() const { return std::min(shared.memory_chunk, shared.horizon); }
   size_t action_dim() const { return static_cast<size_t>(config.action_dim); }

@@ -20,7 +20,7 @@ void DemoMemory::open(const ResolvedAgentConfig& resolved, const DemoRows& demo)
   }
   if (resolved.gru.units == 0) return;
   cut(demo, resolved.memory_chunk());
-  units_ = static_cast<size_t>(resolved.gru.units);
+  units_ = static_cast<size_t>(resolved.state_units());
   state_.assign(path_.size() * units_, 0);
 }
 

@@ -137,7 +137,7 @@ MemorySteps Regression::forward_paths(Workspace& workspace, const DemoRows& demo
                                       int32_t count) const {
   const SequenceSpace& s = workspace.sequences;
   const size_t dim = resolved_->obs_dim();
-  const auto units = static_cast<size_t>(nets_->gru.units);
+  const auto units = static_cast<size_t>(resolved_->state_units());
   int32_t steps = 0;
   for (int32_t q = 0; q < count; ++q) {
     std::copy_n(demo.memory->state(path[q]), units, s.h0 + static_cast<size_t>(q) * units);
@@ -162,7 +162,7 @@ void Regression::remember_episodes(Workspace& workspace, const DemoRows& demo, i
                                    int32_t count) const {
   DemoMemory& memory = *demo.memory;
   int32_t* const path = workspace.sequences.env;
-  const auto units = static_cast<size_t>(nets_->gru.units);
+  const auto units = static_cast<size_t>(resolved_->state_units());
   for (int32_t k = 0;; ++k) {
     int32_t going = 0;  // episodes of which a path follows this one
     for (int32_t e = first; e < first + count; ++e)

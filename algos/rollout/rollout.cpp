@@ -25,7 +25,7 @@ void carve_memory(Arena& arena, const ResolvedAgentConfig& resolved, Rollout& r)
     r.before = arena.make<float>(resolved.num_envs() * resolved.state_dim());
   }
   if (resolved.gru.units) {
-    r.path = resolved.memory_chunk(), r.units = resolved.gru.units;
+    r.path = resolved.memory_chunk(), r.units = resolved.state_units();
     const size_t count = static_cast<size_t>(r.paths()) * resolved.num_envs();
     r.state = arena.make<float>(count * static_cast<size_t>(r.units));
     r.sequence = arena.make<int32_t>(count);

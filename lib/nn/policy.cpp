@@ -56,6 +56,7 @@ struct ActScratch {
   float* row = nullptr;   // with features or a history: entries before they stand beside these
   float* head = nullptr;  // the network's outputs, with state_std
   float *seen = nullptr, *part = nullptr;  // of one group: what it sees and gives
+  float* state = nullptr;                  // of one group
   size_t bytes = 0;
 };
 ActScratch cut_act_scratch(const PolicyView& v, int32_t rows, void* memory) {
@@ -79,6 +80,7 @@ ActScratch cut_act_scratch(const PolicyView& v, int32_t rows, void* memory) {
   if (v.num_groups) {
     s.seen = cutter.make(sz(rows) * sz(largest.in));
     s.part = cutter.make(sz(rows) * sz(largest.out));
+    s.state = cutter.make(sz(rows) * sz(v.gru.units));
   }
   s.bytes = cutter.used();
   return s;
@@ -123,6 +125,26 @@ void remember(const PolicyView& v, const float* x, int32_t rows, float* state, f
   }
 }
 
+// Group i of a policy: its entries of y, and of the states [rows][state_dim()].
+void act_group(const PolicyView& v, int32_t i, const float* x, int32_t rows, const ActScratch& s,
+               float* state, float* y) {
+  const ActorGroup& g = v.group[i];
+  const float* const params = v.params + g.offset;
+  if (g.columns) {
+    pick_columns(x, rows, v.obs_dim(), g.columns, g.shape.in, s.seen);
+    x = s.seen;
+  }
+  if (g.gru.units) {
+    const size_t units = sz(g.gru.units), all = sz(v.state_dim()), at = sz(i) * units;
+    take_states(state, all, at, units, rows, s.state);
+    recurrent_forward(g.net(), params, x, 1, rows, s.state, nullptr, s.mlp, s.memory, s.part);
+    give_states(s.memory.h, all, at, units, rows, state);
+  } else {
+    mlp_forward(g.shape, params, x, rows, s.mlp, s.part);
+  }
+  spread_outputs(g, s.part, rows, sz(v.actor.out), y);
+}
+
 void act_view(const PolicyView& v, const float* obs, const PointRows& clouds, int32_t rows,
               const float* noise, const ActOut& out, void* scratch, float* state) {
   const Kernels& kernel = kernels();
@@ -151,17 +173,17 @@ void act_view(const PolicyView& v, const float* obs, const PointRows& clouds, in
                          sz(v.actor.in), nullptr);
       x = s.obs;
     }
-    for (int32_t i = 0; i < v.num_groups; ++i) {
-      const ActorGroup& g = v.group[i];
-      if (g.columns) pick_columns(x, n, v.obs_dim(), g.columns, g.shape.in, s.seen);
-      mlp_forward(g.shape, v.params + g.offset, g.columns ? s.seen : x, n, s.mlp, s.part);
-      spread_outputs(g, s.part, n, sz(v.actor.out), y);
+    for (int32_t i = 0; i < v.num_groups; ++i)
+      act_group(v, i, x, n, s, state ? state + sz(at) * sz(v.state_dim()) : nullptr, y);
+    if (v.num_groups) {
+      act_outputs(v, y, n, noise ? noise + sz(at) * dim : nullptr, to);
+      continue;
     }
     if (v.gru.units) {
       float* const h = state + sz(at) * sz(v.gru.units);
       recurrent_forward(v.net(), v.params, x, 1, n, h, nullptr, s.mlp, s.memory, y);
       std::copy_n(s.memory.h, sz(n) * sz(v.gru.units), h);
-    } else if (!v.num_groups) {
+    } else {
       mlp_forward(v.actor, v.params, x, n, s.mlp, y);
     }
     act_outputs(v, y, n, noise ? noise + sz(at) * dim : nullptr, to);
@@ -468,8 +490,9 @@ void read_groups(Reader& in, PolicyParts& parts) {
     parts.group_ranges[i] = view_ranges(in, v.row_dim, v.row_dim, &parts.group_num_ranges[i], true);
     if (parts.group_num_ranges[i] > 0)
       g.shape.in = count_ranges(parts.group_ranges[i], parts.group_num_ranges[i]);
+    g.gru = with_gru(g.shape, v.gru.units).gru;
     g.offset = offset;
-    offset += g.shape.num_params();
+    offset += g.net().num_params();
   }
   in.expect_end();
   if (actions != v.action_dim()) bad("its groups do not share the action out");
@@ -507,12 +530,13 @@ void read_parts(const void* bytes, size_t size, PolicyParts& parts) {
   read_arch(in, v.actor);
   if (version > 1) read_head(in, v);
   if (version == 4 || version == 5) read_eyes(in, v, version == 5);
-  if (version == 7) read_memory(in, parts);
+  if (version == 7 || version == 9) read_memory(in, parts);
   if (version == 8) read_squash(in, v);
   v.row_dim = v.entries();
   if (version == 3 || (version > 3 && in.find_section("COLS"))) read_columns(in, parts);
-  if (version == 6) {
+  if (version == 6 || version == 9) {
     if (parts.ranges) bad("it has entries of the whole and of groups");
+    if (v.history > 1) bad("it has a history and groups");
     read_groups(in, parts);
   }
   read_fields(in, parts);
@@ -668,13 +692,15 @@ void write_policy(Writer& out, const PolicyView& view) {
     Vector<float> state(sz(view.state_dim()));
     act_example(view, obs.data(), cloud, action.data(), align_scratch(memory.data()), state.data());
   }
-  out.begin_file(kPolicyMagic, view.squash != Squash::kNone ? 8
-                               : view.state_dim()           ? 7
-                               : view.num_groups            ? 6
-                               : eyes.points                ? (eyes.color ? 5 : 4)
-                               : view.columns               ? 3
-                               : view.state_std             ? 2
-                                                            : 1);
+  const bool remembers = view.state_dim() > 0;
+  out.begin_file(kPolicyMagic, view.squash != Squash::kNone   ? 8
+                               : remembers && view.num_groups ? 9
+                               : remembers                    ? 7
+                               : view.num_groups              ? 6
+                               : eyes.points                  ? (eyes.color ? 5 : 4)
+                               : view.columns                 ? 3
+                               : view.state_std               ? 2
+                                                              : 1);
   out.begin_section("META");
   out.value(view.clip);
   out.value(view.action_repeat);
@@ -702,7 +728,7 @@ void write_policy(Writer& out, const PolicyView& view) {
     out.end_section();
   }
   if (eyes.points) write_eyes(out, view);
-  if (view.state_dim()) write_memory(out, view);
+  if (remembers) write_memory(out, view);
   if (view.columns) write_columns(out, view);
   if (view.num_groups) write_groups(out, view);
   if (view.num_fields > 0) write_fields(out, view);
@@ -737,7 +763,7 @@ void write_group(Writer& out, const PolicyView& view, int32_t i) {
   const ActorGroup& g = view.group[i];
   PolicyView one = view;
   one.group = nullptr, one.num_groups = 0;
-  one.actor = g.shape;
+  one.actor = g.shape, one.gru = g.gru;
   one.columns = g.columns;
   one.params = view.params + g.offset;
   if (!view.state_std) one.log_std = view.log_std + g.first;

@@ -2,7 +2,8 @@
 // Serialised form: the policy.rdm file (base/bytes.hpp), magic "RDMPOLIC". Version 2 is written for a policy
 // whose deviation depends on the state, version 3 for one that sees a part of the observation alone, version
 // 4 for one that sees points, version 5 for one that sees their colours, version 6 for one in groups, version 7 for one
-// that has a memory, version 8 for one whose actions are squashed: versions before do not know these.
+// that has a memory, version 8 for one whose actions are squashed, version 9 for one in groups that have memories:
+// versions before do not know these.
 // Sections FLDS, the names of fields, GENR, the generation, and SEEN, what is usual in a row, came later and
 // are in files of each version: a reader finds sections by their tags, and passes over others.
 #pragma once
@@ -20,7 +21,7 @@
 namespace rdm {
 
 inline constexpr char kPolicyMagic[8] = {'R', 'D', 'M', 'P', 'O', 'L', 'I', 'C'};
-inline constexpr uint32_t kPolicyVersion = 8;
+inline constexpr uint32_t kPolicyVersion = 9;
 inline constexpr int32_t kMaxHistory = 1024;
 
 // Everything that a policy file holds, as views of memory that somebody else owns.
@@ -33,8 +34,8 @@ struct PolicyView {
   int32_t num_groups = 0;             // 0, or 2 to kMaxGroups
   // What it remembers, of a row of a batch, is its state, state_dim() numbers, zeros at first: the state of the GRU
   // before its last layer, or the history entries of its last `history` - 1 decisions as the network saw them,
-  // newest first, which stand behind the entries of the row.
-  GruShape gru;                              // units 0: none
+  // newest first, which stand behind the entries of the row. Of groups the states of their GRUs.
+  GruShape gru;                              // units 0: none; of each group so many
   int32_t history = 1;                       // decisions that it sees, this one included
   const int32_t* history_entries = nullptr;  // [history_width] of entries(), ascending; null: all
   int32_t history_width = 0;
@@ -69,7 +70,7 @@ struct PolicyView {
   RecurrentShape net() const { return {actor, gru}; }
   size_t num_params() const { return num_groups ? group_params(group, num_groups) : net().num_params(); }
   int32_t history_inputs() const { return (history - 1) * history_width; }
-  int32_t state_dim() const { return gru.units + history_inputs(); }
+  int32_t state_dim() const { return gru.units * std::max(num_groups, 1) + history_inputs(); }
   // of a row, that it sees
   int32_t entries() const { return actor.in - eyes.features() - history_inputs(); }
   int32_t obs_dim() const { return columns ? row_dim : entries(); }

@@ -5,8 +5,10 @@
 
 #include "agents.hpp"
 #include "algos/core/groups.hpp"
-#include "algos/rollout/rollout.hpp"
+#include "algos/rollout/sequences.hpp"
+#include "algos/trust_region/trust_region.hpp"
 #include "heap_count.hpp"
+#include "learner_bench.hpp"
 #include "nn/gaussian.hpp"
 #include "nn/policy.hpp"
 
@@ -54,11 +56,18 @@ struct Played {
     policy.reset(Policy::read(bytes.data(), bytes.size(), {}));
   }
   std::vector<float> act(const std::vector<float>& obs) const { return act_of(*policy, obs); }
-  static std::vector<float> act_of(const Policy& p, const std::vector<float>& obs) {
+  // With a memory from `state`, which becomes the next one; empty: from zeros.
+  static std::vector<float> act_of(const Policy& p, const std::vector<float>& obs,
+                                   std::vector<float> state = {}) {
+    return act_on(p, obs, state);
+  }
+  static std::vector<float> act_on(const Policy& p, const std::vector<float>& obs,
+                                   std::vector<float>& state) {
     const auto rows = static_cast<int32_t>(obs.size() / size_of(p.view().obs_dim()));
     std::vector<float> action(size_of(rows) * size_of(p.view().action_dim()));
     std::vector<float> scratch(p.scratch_bytes(rows) / sizeof(float) + 16);
-    p.act(obs.data(), rows, nullptr, action.data(), align_scratch(scratch.data()));
+    state.resize(size_of(rows) * size_of(p.view().state_dim()));
+    p.act(obs.data(), rows, nullptr, action.data(), align_scratch(scratch.data()), {}, state.data());
     return action;
   }
   struct End {
@@ -146,26 +155,34 @@ TEST(Team, OneGroupIsTheAlgorithmForOneAgent) {
     SCOPED_TRACE(of_team);
     const OptionInput defaults[] = {
         {"ppo:clip", "0.3", 0}, {"ppo_lag:clip", "0.4", 0}, {"cpo:trust_kl", "0.05", 0}};
-    AgentSetup many = team(of_team, "all"), one = team(alone, nullptr);
-    for (AgentSetup* s : {&many, &one}) s->config.defaults = defaults, s->config.num_defaults = 3;
-    const AgentPtr a = many.make(), b = one.make();
-    NoiseWorld world(many.config), other(one.config);
-    for (int i = 0; i < 4; ++i) {
-      Epoch e, f;
-      world.epoch(*a, &e);
-      other.epoch(*b, &f);
-      EXPECT_EQ(0, std::memcmp(&e, &f, sizeof e)) << i;
+    for (const char* memory : {"", "gru:6"}) {
+      SCOPED_TRACE(memory);
+      AgentSetup many = team(of_team, "all"), one = team(alone, nullptr);
+      for (AgentSetup* s : {&many, &one}) {
+        s->config.defaults = defaults, s->config.num_defaults = 3;
+        s->with("memory", memory).with("memory_chunk", "4");
+      }
+      const AgentPtr a = many.make(), b = one.make();
+      NoiseWorld world(many.config), other(one.config);
+      for (int i = 0; i < 4; ++i) {
+        Epoch e, f;
+        world.epoch(*a, &e);
+        other.epoch(*b, &f);
+        EXPECT_EQ(0, std::memcmp(&e, &f, sizeof e)) << i;
+      }
+      EXPECT_EQ(parameters(*a), parameters(*b));
+      EXPECT_EQ(policy_file(*a), policy_file(*b));
     }
-    EXPECT_EQ(parameters(*a), parameters(*b));
-    EXPECT_EQ(policy_file(*a), policy_file(*b));
   }
 }
 
-class TeamAlgo : public testing::TestWithParam<std::tuple<const char*, const char*>> {
+class TeamAlgo : public testing::TestWithParam<std::tuple<const char*, const char*, const char*>> {
  protected:
+  bool remembers() const { return *std::get<2>(GetParam()) != 0; }
   AgentSetup setup(int32_t threads = 0) const {
     AgentSetup s = team(std::get<0>(GetParam()), kPair, 40);
     s.with("std_mode", std::get<1>(GetParam()));
+    s.with("memory", std::get<2>(GetParam())).with("memory_chunk", "4");
     s.config.num_threads = threads;
     return s;
   }
@@ -200,13 +217,24 @@ TEST_P(TeamAlgo, SlicesGiveTheBytesOfAWholeUpdate) {
   for (int i = 0; i < 3; ++i) {
     one.epoch(*whole);
     while (other.obs() && parts->missing() > 0) other.decide(*parts);
+    parts->forget(true, nullptr);
+    whole->forget(true, nullptr);
+    const Played was(*parts);
     parts->begin_update(other.obs());
-    std::vector<float> action(40 * kActions), before(40 * kActions);
-    parts->act(other.obs(), false, before.data());
-    for (int k = 1; !parts->update_on(k % 5 + 1, nullptr); ++k) {
-      parts->act(other.obs(), false, action.data());
-      ASSERT_EQ(action, before);  // what acts is the policy of before
+    const std::vector<float> obs(other.obs(), other.obs() + 40 * kObs);
+    std::vector<float> action(40 * kActions), before(40 * kActions), state;
+    parts->act(obs.data(), false, before.data());
+    Played::act_on(*was.policy, obs, state);
+    for (int k = 1; !parts->update_on(k % 5 + 1, nullptr); ++k) {  // what acts is the policy of before
+      parts->act(obs.data(), false, action.data());
+      if (!remembers()) {
+        ASSERT_EQ(action, before);
+      }
+      const auto wanted = Played::act_on(*was.policy, obs, state);
+      for (size_t j = 0; j < wanted.size(); ++j)
+        ASSERT_NEAR(std::clamp(action[j], -1.0f, 1.0f), wanted[j], 1e-6f);
     }
+    parts->forget(true, nullptr);
   }
   EXPECT_EQ(saved(*whole), saved(*parts));
 }
@@ -255,22 +283,36 @@ TEST_P(TeamAlgo, FilesOfTheTeamAndOfEachGroupPlayAsTheAgent) {
   NoiseWorld world(s.config);
   for (int i = 0; i < 3; ++i) world.epoch(*a);
   const Played p(*a);
-  const std::vector<float> obs = rows_of_noise(40 * kObs);
-  std::vector<float> agents(40 * kActions);
-  a->act(obs.data(), false, agents.data());
-  const std::vector<float> played = p.act(obs);
-  for (size_t i = 0; i < agents.size(); ++i)
-    ASSERT_NEAR(played[i], std::clamp(agents[i], -1.0f, 1.0f), 1e-6f);
+  const std::vector<float> all = rows_of_noise(4 * 40 * kObs);
+  std::vector<float> agents(40 * kActions), state, own_state[2], obs;
+  std::unique_ptr<Policy, Played::End> own[2];
   for (int32_t g = 0; g < 2; ++g) {
     const auto bytes = written([&](Writer& w) { write_group(w, p.policy->view(), g); });
-    const std::unique_ptr<Policy, Played::End> own(Policy::read(bytes.data(), bytes.size(), {}));
-    const ActorGroup& group = p.policy->view().group[g];
-    ASSERT_EQ(own->view().action_dim(), group.count);
-    const std::vector<float> part = Played::act_of(*own, obs);
-    for (size_t i = 0; i < 40; ++i)
-      for (size_t j = 0; j < size_of(group.count); ++j)
-        ASSERT_NEAR(part[i * size_of(group.count) + j], played[i * kActions + size_of(group.first) + j],
-                    1e-6f);
+    own[g].reset(Policy::read(bytes.data(), bytes.size(), {}));
+    ASSERT_EQ(own[g]->view().action_dim(), p.policy->view().group[g].count);
+    ASSERT_EQ(own[g]->view().state_dim(), remembers() ? 7 : 0);
+  }
+  ASSERT_EQ(p.policy->view().state_dim(), remembers() ? 14 : 0);
+  for (size_t t = 0; t < 4; ++t) {  // decisions of an episode, the last of which begins another one
+    const auto from = all.begin() + static_cast<long>(t * 40 * kObs);
+    obs.assign(from, from + 40 * kObs);
+    if (t == 3) {
+      a->forget(true, nullptr);
+      for (std::vector<float>* s : {&state, &own_state[0], &own_state[1]})
+        std::fill(s->begin(), s->end(), 0.0f);
+    }
+    a->act(obs.data(), false, agents.data());
+    const std::vector<float> played = Played::act_on(*p.policy, obs, state);
+    for (size_t i = 0; i < agents.size(); ++i)
+      ASSERT_NEAR(played[i], std::clamp(agents[i], -1.0f, 1.0f), 1e-6f);
+    for (size_t g = 0; g < 2; ++g) {
+      const ActorGroup& group = p.policy->view().group[g];
+      const std::vector<float> part = Played::act_on(*own[g], obs, own_state[g]);
+      for (size_t i = 0; i < 40; ++i)
+        for (size_t j = 0; j < size_of(group.count); ++j)
+          ASSERT_NEAR(part[i * size_of(group.count) + j], played[i * kActions + size_of(group.first) + j],
+                      1e-6f);
+    }
   }
   // and back into an agent
   AgentSetup fresh = setup();
@@ -292,19 +334,26 @@ TEST_P(TeamAlgo, NothingIsAllocatedAfterTheFirstEpoch) {
   EXPECT_EQ(heap_count(), before);
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    All, TeamAlgo,
-    testing::Combine(testing::Values("mappo", "mappo_lag", "happo", "macpo", "ippo", "ippo_lag"),
-                     testing::Values("free", "state")),
-    [](const auto& i) { return std::string(std::get<0>(i.param)) + "_" + std::get<1>(i.param); });
+INSTANTIATE_TEST_SUITE_P(All, TeamAlgo,
+                         testing::Combine(testing::Values("mappo", "mappo_lag", "happo", "macpo", "ippo",
+                                                          "ippo_lag"),
+                                          testing::Values("free", "state"), testing::Values("", "gru:7")),
+                         [](const auto& i) {
+                           return std::string(std::get<0>(i.param)) + "_" + std::get<1>(i.param) +
+                                  (*std::get<2>(i.param) ? "_gru" : "");
+                         });
 
 // A group of IPPO learns as an agent of its own would that sees the group's fields alone, acts as the group acted, and
 // gets the team's rewards and costs: actor and critics, over ends, truncations with final rows, and rows left out.
 TEST(Team, IndependentGroupsLearnAsAgentsOfTheirOwn) {
-  for (const auto& [of_team, alone] : {std::pair{"ippo", "ppo"}, std::pair{"ippo_lag", "ppo_lag"}}) {
-    SCOPED_TRACE(of_team);
+  const bool limited[] = {false, true};
+  for (const auto& [with_limit, memory] :
+       {std::pair{limited[0], ""}, {limited[1], ""}, {limited[0], "gru:5"}, {limited[1], "gru:5"}}) {
+    const char *const of_team = with_limit ? "ippo_lag" : "ippo", *const alone =
+                                                                      with_limit ? "ppo_lag" : "ppo";
+    SCOPED_TRACE(std::string(of_team) + memory);
     AgentSetup s = team(of_team, kPair);
-    s.with("terminal_cost", "true");
+    s.with("terminal_cost", "true").with("memory", memory).with("memory_chunk", "4");
     const AgentPtr whole = s.make();
     const char* const names[] = {"right", "left"};
     const char* const fields[] = {"right.*,ball", "!right.*"};
@@ -313,6 +362,7 @@ TEST(Team, IndependentGroupsLearnAsAgentsOfTheirOwn) {
     for (size_t g = 0; g < 2; ++g) {
       AgentSetup t = team(alone, nullptr);
       t.with("terminal_cost", "true").with("actor_obs", fields[g]).with("critic_obs", fields[g]);
+      t.with("memory", memory).with("memory_chunk", "4");
       t.config.action_dim = count[g];
       own[g] = t.make();
       TensorInfo mine, theirs;
@@ -328,7 +378,7 @@ TEST(Team, IndependentGroupsLearnAsAgentsOfTheirOwn) {
             std::copy_n(theirs.data, mine.rows * mine.cols, mine.data), ++copied;
           }
       }
-      ASSERT_EQ(copied, std::strcmp(alone, "ppo") == 0 ? 12 : 18);
+      ASSERT_EQ(copied, (with_limit ? 18 : 12) + (*memory ? 4 : 0));
     }
     NoiseWorld world(s.config);
     std::vector<float> action(24 * kActions), part;
@@ -372,6 +422,61 @@ TEST(Team, IndependentGroupsLearnAsAgentsOfTheirOwn) {
       }
     }
     EXPECT_GT(moved, 0.1f);
+  }
+}
+
+// What the Fisher matrix of one group says of a step is the KL of what the group then gives, through the sequences of
+// its memory: v'Fv / 2 = KL / step^2 for small steps, and nothing of a step of the others.
+TEST(Team, FisherProductsOfAGroupThroughItsMemoryAreThoseOfTheKl) {
+  AgentSetup s = team("macpo", kPair, 16);
+  s.with("memory", "gru:4").with("memory_chunk", "4").with("minibatches", "1").with("cg_damping", "0");
+  s.with("last_layer_scale", "1").with("init_std", "0.7");
+  Bench b(std::move(s));
+  Rollout& r = b.rollout;
+  Stream stream(2, 0, Purpose::kTest);
+  for (size_t i = 0; i < size_of(r.paths()) * 16 * size_of(r.units); ++i)
+    r.state[i] = static_cast<float>(stream.signed_unit());
+  for (size_t i = 0; i < size_of(b.resolved.samples); ++i) r.age[i] = stream.uniform() < 0.2 ? 0 : 1;
+  restart_sequences(r, 0, 16);
+  Batch batch(r.order, list_sequences(r, 0, 16, 0, nullptr));
+  batch.envs = 16, batch.path = r.path;
+  b.learner.begin_outputs(batch, r.mean).finish();  // what acted
+  for (size_t j = 0; j < kActions; ++j) r.log_std[j] = b.nets.log_std()[j];
+  Arena measure;
+  Fisher fisher;
+  fisher.carve(measure, b.resolved);
+  Arena arena(HostHooks(), measure.used());
+  fisher.carve(arena, b.resolved);
+  fisher.open(b.resolved, r, b.nets, b.workers);
+  fisher.read_live(kTrustRows.read(b.resolved.options));
+  const size_t size = b.nets.block[Networks::kActor].size;
+  for (const int32_t g : {0, 1}) {
+    SCOPED_TRACE(g);
+    b.nets.focus = g;
+    fisher.set_rows(batch);
+    std::vector<float> v(size), product(size);
+    const ActorGroup& own = b.nets.group[g];
+    const size_t first = b.nets.std_size + own.offset, last = first + own.net().num_params();
+    for (size_t j = b.nets.std_size; j < size; ++j) v[j] = static_cast<float>(stream.signed_unit());
+    fisher.multiply(v.data(), product.data());
+    double curve = 0;
+    for (size_t j = first; j < last; ++j)
+      curve += static_cast<double>(v[j]) * static_cast<double>(product[j]);
+    for (size_t j = b.nets.std_size; j < size; ++j)
+      if (j < first || j >= last) {
+        ASSERT_EQ(product[j], 0.0f) << j;
+      }
+    const std::vector<float> before(b.nets.params, b.nets.params + size);
+    const auto kl_of = [&](float step) {
+      for (size_t j = first; j < last; ++j) b.nets.params[j] = before[j] + step * v[j];
+      const double kl = b.learner.kl(batch);
+      std::copy(before.begin(), before.end(), b.nets.params);
+      return kl;
+    };
+    constexpr float kStep = 0.01f;  // the mean of both ways has no cubic term
+    const double kl = (kl_of(kStep) + kl_of(-kStep)) / 2;
+    EXPECT_GT(curve, 0.1);
+    EXPECT_NEAR(kl / (kStep * static_cast<double>(kStep)), curve / 2, 0.02 * curve);
   }
 }
 

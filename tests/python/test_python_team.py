@@ -86,6 +86,41 @@ class Policies(unittest.TestCase):
                 x = np.tanh(x) if layer < 2 else x
             np.testing.assert_allclose(np.clip(x, -1, 1), team.act(obs), atol=2e-6)
 
+    def test_memories_of_groups_are_one_gru(self):
+        for hidden in ("5,4", ""):
+            with self.subTest(hidden), redman.Pool("matrix_game", num_envs=8) as pool:
+                pool.reset()
+                agent = redman.Agent(pool, algo="mappo", options={"hidden": hidden, "memory": "gru:3", "activation": "tanh",
+                                                                  "normalize_obs": True})
+                for _ in range(2):
+                    agent.rollout(pool)
+                team = agent.policy()
+                self.assertEqual(team.info.state_dim, 6)
+                t = {name: np.array(value) for name, value in team.tensors.items()}
+                bias = {name: t[name].reshape(-1) for name in t if name.endswith("bias")}
+                rng = np.random.default_rng(1)
+                h, state = np.zeros((50, 6)), team.start(50)
+                own = {name: (team.group(name), team.group(name).start(50)) for name in team.groups}
+                for _ in range(5):
+                    obs = rng.uniform(-1, 1, (50, 2)).astype(np.float32)
+                    x = np.clip((obs - t["normalizer.shift"].reshape(-1)) * t["normalizer.scale"].reshape(-1), -5, 5)
+                    layers = len([n for n in hidden.split(",") if n])
+                    for layer in range(layers):
+                        x = np.tanh(x @ t[f"actor.{layer}.weight"].T + bias[f"actor.{layer}.bias"])
+                    a = np.split(x @ t["memory.input.weight"].T + bias["memory.input.bias"], 3, axis=1)
+                    b = np.split(h @ t["memory.state.weight"].T + bias["memory.state.bias"], 3, axis=1)
+                    r, z = 1 / (1 + np.exp(-a[0] - b[0])), 1 / (1 + np.exp(-a[1] - b[1]))
+                    h = z * h + (1 - z) * np.tanh(a[2] + r * b[2])
+                    y = h @ t[f"actor.{layers}.weight"].T + bias[f"actor.{layers}.bias"]
+                    action, state = team.act(obs, state)
+                    np.testing.assert_allclose(np.clip(y, -1, 1), action, atol=2e-6)
+                    np.testing.assert_allclose(h, state, atol=2e-6)
+                    for i, name in enumerate(team.groups):
+                        policy, kept = own[name]
+                        part, kept = policy.act(obs, kept)
+                        own[name] = policy, kept
+                        np.testing.assert_allclose(part[:, 0], np.asarray(action)[:, i], atol=1e-6)
+
 
 class PettingZoo(unittest.TestCase):
     def test_an_episode_is_that_of_the_pool(self):

@@ -34,6 +34,7 @@ policy part --set hidden=16,16 --set 'actor_obs=proprioception,object.*' --set '
 policy squashed --task ball_run --algo sac_lag --set hidden=16,16 --set start_steps=64 --set batch_rows=32
 policy bounded --task ball_run --algo td3_lag --set hidden=16,16 --set start_steps=64 --set batch_rows=32
 policy gru --set memory=gru:13 --set hidden=16
+policy team_gru --algo mappo --set memory=gru:5 --set hidden=16
 policy past --set history=4 --set hidden=16 --set 'history_fields=object.*'
 cloud='--set encoder_points=32 --set cloud_width=24 --set cloud_height=24'
 # shellcheck disable=SC2086

@@ -61,7 +61,7 @@ check() {
     fi
     status "$file" 0 "$file"
     # any number that is changed is noticed, and a policy that takes what is no number
-    for table in weight_0 $(case $name in bare_gru) echo weight_input bias_state ;; *) echo bias_1 ;; esac) $(case $eyes in *EYES*) echo weight_eye_0 origin ;; esac) ${shield:+low high}; do
+    for table in weight_0 $(case $name in bare*_gru) echo weight_input bias_state ;; *) echo bias_1 ;; esac) $(case $eyes in *EYES*) echo weight_eye_0 origin ;; esac) ${shield:+low high}; do
       awk -v table="_$table[" '{ if (on) { sub(/^  -?/, "&1"); on = 0 } if (index($0, table) && /^static const/) on = 1; print }' \
         "$file" > changed.c
       cmp -s "$file" changed.c && say "$file: nothing was changed in $table"
@@ -134,6 +134,8 @@ check tints --set encoder=8,9 --set encoder_classes=5 --set encoder_color=true -
 eyes=-DSTATE
 check gru --set memory=gru:13 --set hidden=16
 check bare_gru --set memory=gru:6 --set hidden= --set std_mode=state
+check team_gru --algo mappo --set memory=gru:5 --set hidden=16
+check bare_team_gru --algo mappo --set memory=gru:4 --set hidden= --set std_mode=state
 check past --set history=4 --set hidden=16
 check some --set history=3 --set 'history_fields=object.*' --set 'actor_obs=proprioception,object.*' --set hidden=16
 for name in gru past; do
@@ -141,7 +143,7 @@ for name in gru past; do
   status changed.c 1 "$name without its memory"
 done
 eyes=
-[ $checked -eq 18 ] || say "$checked policies"
+[ $checked -eq 20 ] || say "$checked policies"
 
 # several policies in one program, by one file or by several
 printf '#include "%s"\n#include "%s"\n#include "%s"\n#include "%s"\nint main(void) { return 0; }\n' tanh.c elu_8.c elu_8.c kinds.c > both.c
