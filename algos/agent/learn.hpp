@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "algos/core/agent_types.hpp"
+#include "algos/rollout/episodes.hpp"
 
 namespace rdm {
 
@@ -15,12 +16,13 @@ struct LearnRows {
 };
 
 struct LearnReport {
-  int64_t steps = 0;                                                   // gradient steps of this call
-  int64_t rows = 0;                                                    // that are learned from
-  int64_t skipped = 0;                                                 // gradients that were not finite
-  double loss_policy = 0, loss_reward_value = 0, loss_cost_value = 0;  // means over the steps
-  double value_reward = 0, value_cost = 0;
-  double cost[kMaxCosts] = {};        // [cost_dim] estimate of J_c at the last multiplier step
+  int64_t steps = 0;    // gradient steps of this call
+  int64_t rows = 0;     // that are learned from
+  int64_t skipped = 0;  // gradients that were not finite
+  double loss_policy = kNothing, loss_reward_value = kNothing,
+         loss_cost_value = kNothing;  // means over the steps
+  double value_reward = kNothing, value_cost = kNothing;
+  double cost[kMaxCosts];             // estimate of J_c now; kNothing of costs without a limit
   double multiplier[kMaxCosts] = {};  // [cost_dim]
 };
 

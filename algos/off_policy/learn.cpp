@@ -8,6 +8,7 @@
 // which is the sum over an episode whose costs are spread evenly. With option discounted_limit n is the sum of an
 // episode's discounts, with cost_limit_per_step it is the steps that the limit is over.
 #include <algorithm>
+#include <iterator>
 
 #include "algos/off_policy/off_policy.hpp"
 #include "base/error.hpp"
@@ -108,6 +109,7 @@ LearnReport OffPolicy::learn(const LearnRows& rows, int64_t steps) {
 
 LearnReport OffPolicy::learn_report(int64_t steps, int64_t skipped_before) {
   LearnReport out;
+  std::fill(std::begin(out.cost), std::end(out.cost), kNothing);
   JudgedCosts costs;
   judge_starts(costs);
   for (int32_t k = 0; k < costs.count; ++k) {
@@ -120,11 +122,12 @@ LearnReport OffPolicy::learn_report(int64_t steps, int64_t skipped_before) {
   if (sums_.steps == 0) return out;
   Learned learned;
   report(learned);
-  out.loss_policy = sums_.actor_steps ? learned.mean.loss : 0;
+  if (sums_.actor_steps) out.loss_policy = learned.mean.loss;
   out.loss_reward_value = learned.mean.reward_loss;
-  out.loss_cost_value = learned.mean.cost_loss;
   out.value_reward = mean_value(false);
-  out.value_cost = resolved().num_limited ? mean_value(true) : 0;
+  if (resolved().num_limited == 0) return out;
+  out.loss_cost_value = learned.mean.cost_loss;
+  out.value_cost = mean_value(true);
   return out;
 }
 

@@ -182,13 +182,13 @@ typedef struct rdm_learn_report { /* what rdm_agent_learn did */
   int64_t steps;              /* gradient steps of this call */
   int64_t rows;               /* count that are learned from */
   int64_t skipped_gradients;  /* steps left out for a gradient that was not finite */
-  double loss_policy;         /* mean over the steps */
+  double loss_policy;         /* mean over the steps; NaN without any, as the next four */
   double loss_reward_value;   /* mean squared error */
-  double loss_cost_value;     /* likewise, of the costs with limits */
+  double loss_cost_value;     /* likewise, of the costs with limits; NaN where there is none */
   double value_reward;        /* mean prediction */
   double value_cost;          /* likewise */
   double cost[RDM_MAX_COSTS]; /* what the critics make of the sum of each limited cost over an
-                               * episode of the policy; 0 for others */
+                               * episode of the policy; NaN for others */
   double multiplier[RDM_MAX_COSTS]; /* of each cost; 0 where there is none */
 } rdm_learn_report;
 /* Learns from recorded rows alone, without a world, by an algorithm with a replay memory, such as

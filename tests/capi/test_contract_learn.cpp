@@ -1,5 +1,7 @@
 // rdm_agent_learn through the C ABI: what it refuses and how it says so, memory that is told and met or refused, and a
 // memory that a recording fills before worlds do.
+#include <cmath>
+
 #include "contract.hpp"
 
 namespace {
@@ -85,10 +87,10 @@ TEST(ContractLearn, ReportsWhatItDid) {
   EXPECT_GT(report.cost[0], 0.5);  // two of six rows cost 1
   EXPECT_LT(report.cost[0], 5);
   EXPECT_GT(report.multiplier[0], 0);
-  EXPECT_EQ(report.cost[1], 0);
+  EXPECT_TRUE(std::isnan(report.cost[1]));
   ASSERT_EQ(rdm_agent_learn(l.a, o.r, 0, &report), RDM_OK);
   EXPECT_EQ(report.steps, 0);
-  EXPECT_EQ(report.loss_policy, 0);
+  EXPECT_TRUE(std::isnan(report.loss_policy));
   report.struct_size = 8;
   EXPECT_EQ(rdm_agent_learn(l.a, o.r, 0, &report), RDM_ERROR_ARGUMENT);
 }

@@ -3108,12 +3108,12 @@ class LearnReport(Record):
     steps: gradient steps of this call
     rows: count that are learned from
     skipped_gradients: steps left out for a gradient that was not finite
-    loss_policy: mean over the steps
+    loss_policy: mean over the steps; NaN without any, as the next four
     loss_reward_value: mean squared error
-    loss_cost_value: likewise, of the costs with limits
+    loss_cost_value: likewise, of the costs with limits; NaN where there is none
     value_reward: mean prediction
     value_cost: likewise
-    cost: what the critics make of the sum of each limited cost over an episode of the policy; 0 for others
+    cost: what the critics make of the sum of each limited cost over an episode of the policy; NaN for others
     multiplier: of each cost; 0 where there is none
     """
 
@@ -3137,12 +3137,12 @@ class rdm_learn_report(Structure):
     steps: gradient steps of this call
     rows: count that are learned from
     skipped_gradients: steps left out for a gradient that was not finite
-    loss_policy: mean over the steps
+    loss_policy: mean over the steps; NaN without any, as the next four
     loss_reward_value: mean squared error
-    loss_cost_value: likewise, of the costs with limits
+    loss_cost_value: likewise, of the costs with limits; NaN where there is none
     value_reward: mean prediction
     value_cost: likewise
-    cost: what the critics make of the sum of each limited cost over an episode of the policy; 0 for others
+    cost: what the critics make of the sum of each limited cost over an episode of the policy; NaN for others
     multiplier: of each cost; 0 where there is none
     """
 
