@@ -8,12 +8,13 @@ trap 'rm -rf "$helps"' EXIT
 failed=0 commands=0
 # Lines of code, joined where a backslash ends them: the page, the subcommand (of bench and data its own too), the flags.
 awk '
-  FNR == 1 { code = 0 }
-  /^```/ { code = !code && /^```(sh)?$/; next }
+  FNR == 1 { fence = code = 0 }
+  /^```/ { fence = !fence; code = fence && /^```(sh)?$/; next }
   code {
     line = line $0
     if (sub(/\\$/, "", line)) next
     sub(/ #.*/, "", line)
+    gsub(/\$\([^)]*\)/, "", line)  # what another command prints
     if (match(line, /(^|[ (])(build\/[a-z]*\/bin\/|\$|\.\/)?redman +[a-z]+/)) {
       text = substr(line, RSTART)
       sub(/^[ (]*[^ ]* +/, "", text)
