@@ -42,9 +42,10 @@ function openEngine(m) {
       const count = good(m._page_contacts());
       return { count, rows: floats(m._page_touches(), 6 * count) };
     },
+    limit: value => good(m._page_limit(value)),
     push: (shape, x, y, z) => good(m._page_push(shape, x, y, z)),
-    learn: (task, algo, worlds, poolSeed, seed, settings = '') =>
-      lend([task, algo, settings], (t, a, s) => good(m._page_learn(t, a, worlds, poolSeed, seed, s))),
+    learn: (task, algo, worlds, poolSeed, seed, settings = '', worldSettings = '') =>
+      lend([task, algo, settings, worldSettings], (t, a, s, w) => good(m._page_learn(t, a, worlds, poolSeed, seed, s, w))),
     epoch: () => JSON.parse(read(m._page_epoch())),
     learned() {
       const size = good(m._page_freeze()), p = m._page_learned();

@@ -157,6 +157,11 @@ EXPORT int page_reset(double seed) {
   return rdm_pool_reset(pool, &s, NULL) ? -1 : 0;
 }
 
+/* Of the episode that runs: a limit of option limit_range. */
+EXPORT int page_limit(double limit) {
+  return rdm_pool_set_limit(pool, -1, limit) ? -1 : 0;
+}
+
 /* Shapes, costs and cameras of the world. */
 EXPORT const char* page_scene(void) {
   rdm_task task = {.struct_size = sizeof task};
@@ -301,12 +306,12 @@ static rdm_epoch epoch;
 static void* learned;
 
 EXPORT int page_learn(const char* task, const char* algo, int worlds, double pool_seed, double seed,
-                      const char* settings) {
+                      const char* settings, const char* world_settings) {
   rdm_agent_config config;
   rdm_agent_destroy(agent);
   rdm_pool_destroy(class_pool);
   agent = NULL;
-  class_pool = make_pool(task, worlds, pool_seed, NULL);
+  class_pool = make_pool(task, worlds, pool_seed, world_settings);
   if (!class_pool || rdm_pool_reset(class_pool, NULL, NULL)) return -1;
   if (rdm_agent_config_init(&config, sizeof config) || rdm_agent_config_for_pool(&config, class_pool))
     return -1;
@@ -382,7 +387,8 @@ EXPORT const char* page_hash(const char* task, const char* engine) {
 /* The hash of a line of tests/golden/learners.txt: an agent after three epochs. */
 EXPORT const char* page_learner_hash(const char* algo, const char* task) {
   size_t size = 0;
-  int good = page_learn(task, algo, 16, 7, 11, "hidden=32,16\nhorizon=24\npasses=2\nminibatches=2") == 0;
+  int good =
+      page_learn(task, algo, 16, 7, 11, "hidden=32,16\nhorizon=24\npasses=2\nminibatches=2", NULL) == 0;
   for (int i = 0; good && i < 3; ++i) good = rdm_agent_rollout(agent, class_pool, NULL) == RDM_OK;
   if (!good || rdm_agent_write_state(agent, NULL, 0, &size)) return NULL;
   void* bytes = malloc(size);

@@ -15,7 +15,7 @@ redman.ready = (async () => {
   $('about').textContent = `redman ${about.version} in WebAssembly, ${thousands(wasm.length / 1024)} kB`;
 
   let task = '', actor = 'zero', world = null, view = null, model = null, playing = false, owed = 0, before = 0, seed = 1;
-  let learned = null, learnedTask = '', played = 0, contactPeak = 1e-6, shown = '';
+  let settings = '', learned = null, learnedTask = '', learnedLimits = null, played = 0, contactPeak = 1e-6, shown = '';
   const finished = { count: 0, success: 0 }, timed = { ms: 0, steps: 0 };  // of the last hundred or so steps
   const contacts = { xyz: new Float32Array(3 * 128), force: new Float32Array(3 * 128), unit: 1, end: [0], most: 128 };
 
@@ -60,18 +60,35 @@ redman.ready = (async () => {
 
   // ---- the world ----
   const demonstration = () => redmanDemonstrations[task];
+  // A policy for any limit observes what is left of it, so its world tells it.
+  const rangeOf = limits => `limit_range=${limits[0]}..${limits[1]}`;
+  const settingsOf = who => who === 'demonstration' && demonstration() ? demonstration().settings || ''
+    : who === 'learned' && learnedLimits ? 'budget=show\n' + rangeOf(learnedLimits) : '';
+  function setLimit() {
+    if ($('limit-box').hidden) return;
+    const limit = Number($('limit').value);
+    engine.limit(limit);
+    world.costs[0].limit = limit;
+    $('limit-text').textContent = number(limit);
+  }
   function begin(from) {
     seed = actor === 'demonstration' ? demonstration().seed : from;
     engine.reset(seed);
+    setLimit();
     played = 0;
     pose();
     showNumbers({ reward: 0, ret: 0, step: 0, sum: world.costs.map(() => 0) });
   }
   function open(name) {
-    const settings = actor === 'demonstration' ? demonstration().settings : '';
+    settings = settingsOf(actor);
     engine.open(name, 1, settings);
     world = engine.scene();
+    world.limit = world.costs.length ? world.costs[0].limit : -1;
     task = name;
+    const any = actor === 'learned' && learnedLimits;
+    $('limit-box').hidden = !any;
+    if (any) Object.assign($('limit'), { min: any[0], max: any[1], value: any[1] });
+    $('any-limit').disabled = !(world.limit > 0);
     finished.count = finished.success = 0;
     timed.ms = timed.steps = 0;
     ({ model, view } = showScene(view, world.shapes, () => modelOf(world.shapes, engine.poses(world.shapes.length)), contacts, mouse.arrow));
@@ -92,9 +109,8 @@ redman.ready = (async () => {
   }
   function act(who) {
     if (!can(who)) return;
-    const own = who === 'demonstration' || actor === 'demonstration';
     actor = who;
-    if (own && ((demonstration() && demonstration().settings) || '') !== '') open(task);
+    if (settingsOf(who) !== settings) open(task);
     if (who === 'trained') engine.policy(bytesOf(redmanPolicies[task]));
     if (who === 'learned') engine.policy(learned);
     showState('');
@@ -127,6 +143,7 @@ redman.ready = (async () => {
       redman.finished = n;
       played = 0;
       if (actor === 'learned') engine.policy(learned);
+      setLimit();
     }
     showNumbers(n);
     if (over && given) begin(0);
@@ -157,7 +174,7 @@ redman.ready = (async () => {
   function drawCurves() {
     $('return-curve').hidden = $('cost-curve').hidden = !curve.task;
     if (!curve.task) return;
-    const limit = world && world.costs.length && world.costs[0].limit >= 0 ? world.costs[0].limit : null;
+    const limit = world && world.limit >= 0 && !curve.limits ? world.limit : null;
     plot($('return-curve'), curve.steps, curve.ret, null, 'return of an episode', ink('--accent'));
     plot($('cost-curve'), curve.steps, curve.cost, curve.task === task || !curve.task ? limit : null, 'cost of an episode', ink('--ink'));
   }
@@ -191,16 +208,19 @@ redman.ready = (async () => {
         if (data.policy) {
           learned = data.policy;
           learnedTask = curve.task;
+          learnedLimits = curve.limits;
           if (actor !== 'learned') showActors();
         }
         drawCurves();
       };
     }
-    Object.assign(curve, { steps: [], ret: [], cost: [], task: name });
+    const limits = $('any-limit').checked && world.limit > 0 ? [world.limit / 8, world.limit] : null;
+    Object.assign(curve, { steps: [], ret: [], cost: [], task: name, limits });
     if (actor === 'learned') act('zero');
     learnedTask = '';
     showActors();
-    worker.postMessage({ start: { run: mine, wasm, task: name, algo: $('algo').value, worlds: Number($('worlds').value), seed: Number($('seed').value), settings: '', most } });
+    worker.postMessage({ start: { run: mine, wasm, task: name, algo: $('algo').value, worlds: Number($('worlds').value), seed: Number($('seed').value), settings: '',
+      worldSettings: limits ? 'budget=saute\n' + rangeOf(limits) : '', most } });
     $('train').textContent = 'stop';
     drawCurves();
     $('training').textContent = 'making worlds and networks';
@@ -232,6 +252,7 @@ redman.ready = (async () => {
   $('step').onclick = () => { play(false); step(); pose(); };
   $('again').onclick = () => begin(seed + 1);
   $('contacts').onchange = e => { if (view) view.setContacts(e.target.checked); pose(); };
+  $('limit').oninput = setLimit;
   $('strength').oninput = showNewton;
   $('train').onclick = () => (redman.training ? stopTraining() : startTraining());
   $('prove').onclick = () => prove();

@@ -1,4 +1,4 @@
-// Training beside the page: {start: {wasm, task, algo, worlds, seed, settings}} makes an agent and goes on until {stop: true}.
+// Training beside the page: {start: {wasm, task, algo, worlds, seed, settings, worldSettings}} makes an agent and goes on until {stop: true}.
 // Every epoch is posted, and about once a second the policy as it is then.
 'use strict';
 let engine = null, running = 0;
@@ -8,7 +8,7 @@ onmessage = async ({ data }) => {
   const s = data.start;
   try {
     if (!engine) engine = openEngine(await createRedman({ wasmBinary: s.wasm }));
-    engine.learn(s.task, s.algo, s.worlds, s.seed, s.seed, s.settings);
+    engine.learn(s.task, s.algo, s.worlds, s.seed, s.seed, s.settings, s.worldSettings);
     let shown = 0, busy = 0, steps = 0;
     while (run === running) {
       const began = performance.now(), epoch = engine.epoch();

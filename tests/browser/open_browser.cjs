@@ -127,6 +127,29 @@ async function whole() {
     await click(page, '#train');
     expect(!(await page.ask('redman.training')), 'training does not stop');
 
+    // one policy for any limit: what is left of it is observed, so another limit is another course
+    await page.ask(`redman.act('zero'), document.getElementById('any-limit').click(), document.getElementById('train').click()`);
+    for (let i = 0; i < 300 && ((await page.ask('redman.epoch.steps')) < 10000 || (await page.ask('redman.state.learned')) !== 'ball_run'); ++i) await wait(200);
+    await click(page, '#train');
+    const limited = await page.ask(`(() => {
+      const slider = document.getElementById('limit'), hidden = document.getElementById('limit-box').hidden;
+      document.querySelector('#actors button[data-actor=learned]').click();
+      const course = value => {
+        slider.value = value;
+        slider.oninput();
+        redman.begin(7);
+        redman.step(30);
+        return redman.last.ret;
+      };
+      return { hidden, shown: !document.getElementById('limit-box').hidden, range: [Number(slider.min), Number(slider.max)],
+        courses: [slider.min, slider.max, slider.min].map(course), text: document.getElementById('limit-text').textContent };
+    })()`);
+    expect(limited.hidden && limited.shown && limited.range[0] * 8 === limited.range[1], 'the slider of the limit: ' + JSON.stringify(limited));
+    expect(limited.courses[0] === limited.courses[2] && limited.courses[0] !== limited.courses[1], 'a limit changes nothing: ' + limited.courses);
+    await page.picture(path.join(pictures, 'limit.png'));
+    await page.ask(`redman.act('zero'), document.getElementById('any-limit').click()`);
+    expect(await page.ask(`document.getElementById('limit-box').hidden`), 'the slider stays where there is no such policy');
+
     // every task opens, steps and is drawn
     for (const task of await page.ask('Array.from(document.getElementById("task").options, o => o.value)')) {
       const sum = await page.ask(`(() => { redman.pause(); redman.choose('${task}'); redman.step(3); return redman.last.ret; })()`);
