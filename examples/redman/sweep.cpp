@@ -103,7 +103,7 @@ std::string file_name(const std::string& text) {
   return name;
 }
 
-std::vector<Cell> cells_of(const SweepFlags& flags) {
+std::vector<Cell> runs_of(const SweepFlags& flags) {
   const auto tasks = words_of(flags.tasks), algos = words_of(flags.algos);
   const auto seeds = read_seeds(flags.seeds);
   const auto variants = variants_of(flags.varied);
@@ -321,7 +321,7 @@ std::vector<SweepRow> rows_of(const std::vector<Cell>& cells) {
 
 Report run_sweep(const SweepFlags& flags) {
   if (flags.out.empty()) throw Usage("--out: give the folder that the runs go to");
-  const std::vector<Cell> cells = cells_of(flags);
+  const std::vector<Cell> cells = runs_of(flags);
   try_settings(flags, cells);
   const Ran ran = run_cells(flags, cells);
   Table table({"task", "configuration", "runs", "return, IQM", "95% interval", "cost, IQM", "95% interval",
