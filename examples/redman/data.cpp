@@ -24,7 +24,7 @@ struct DataMakeFlags {
   bool list = false;
 };
 
-bool ends_with(const std::string& text, const std::string& end) {
+bool file_ends_in(const std::string& text, const std::string& end) {
   return text.size() > end.size() && same_name(text.substr(text.size() - end.size()), end);
 }
 
@@ -66,7 +66,7 @@ Report run_data_make(DataMakeFlags flags) {
   const std::string out = flags.out.empty()
                               ? std::string(make.published ? make.published : make.pool.task.c_str()) + ".npz"
                               : flags.out;
-  if (!ends_with(out, ".npz"))
+  if (!file_ends_in(out, ".npz"))
     throw Usage("--out " + printable(out) +
                 ": its name does not end in .npz; data convert makes other files of it");
   check_replaceable(out);
@@ -97,10 +97,10 @@ struct DataConvertFlags {
 // The endings of files that the tool reads and writes; Usage for others.
 enum class DataFile { kArrays, kMcap };
 DataFile data_file(const std::string& path, const char* what) {
-  if (ends_with(path, ".npz")) return DataFile::kArrays;
-  if (ends_with(path, ".mcap")) return DataFile::kMcap;
+  if (file_ends_in(path, ".npz")) return DataFile::kArrays;
+  if (file_ends_in(path, ".mcap")) return DataFile::kMcap;
   for (const char* end : {".hdf5", ".h5", ".minari", ".lerobot"})
-    if (ends_with(path, end))
+    if (file_ends_in(path, end))
       throw Usage(std::string(what) + ' ' + printable(path) +
                   ": such files are read and written in Python: python3 -m redman data convert FROM TO");
   throw Usage(

@@ -34,10 +34,6 @@ extern char** environ;
 namespace tool {
 namespace {
 
-bool ends_with(const std::string& s, const std::string& end) {
-  return s.size() > end.size() && s.compare(s.size() - end.size(), end.size(), end) == 0;
-}
-
 // Two ends that no child keeps.
 bool pipe_for_us(int ends[2]) {
 #if defined(__APPLE__)  // which has no pipe2
@@ -51,8 +47,8 @@ bool pipe_for_us(int ends[2]) {
 }  // namespace
 
 Film::Film(const std::string& path, int32_t width, int32_t height, double frames_per_second) : path_(path) {
-  const bool gif = ends_with(path, ".gif");
-  if (!gif && !ends_with(path, ".mp4")) throw Usage("--video " + path + ": it is not a .mp4 or .gif file");
+  const bool gif = path.ends_with(".gif");
+  if (!gif && !path.ends_with(".mp4")) throw Usage("--video " + path + ": it is not a .mp4 or .gif file");
   check_replaceable(path);
   const std::string size = format("%dx%d", width, height), rate = format("%.6g", frames_per_second);
   // one palette for the whole film; an even size is what H.264 needs

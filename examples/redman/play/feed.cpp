@@ -11,7 +11,7 @@
 namespace tool {
 namespace {
 
-constexpr size_t kRow = 6;  // numbers of a row before its costs
+constexpr size_t kRowHead = 6;  // numbers of a row before its costs
 constexpr int64_t kMostParts = 1 << 16, kMostWorlds = 64;
 
 uint32_t size_at(const std::string& bytes, size_t at) {
@@ -119,7 +119,7 @@ FeedFrame::FeedFrame(const FeedScene& scene, const FeedMessage& message) {
   const auto count = static_cast<size_t>(integer_at(message.head, "contacts", 0, kMostParts)),
              seen = static_cast<size_t>(integer_at(message.head, "points", 0, kMostParts));
   world = static_cast<int32_t>(integer_at(message.head, "world", 0, static_cast<int64_t>(scene.worlds) - 1));
-  const size_t costs = scene.looks.costs.size(), width = kRow + 2 * costs + scene.actions.size(),
+  const size_t costs = scene.looks.costs.size(), width = kRowHead + 2 * costs + scene.actions.size(),
                posed = scene.worlds * scene.moving.size() * 7;
   if (message.numbers.size() != posed + scene.worlds * width + 6 * count + 4 * seen)
     throw Failure(format("a frame of %zu numbers does not fit its scene", message.numbers.size()));
@@ -135,9 +135,9 @@ FeedFrame::FeedFrame(const FeedScene& scene, const FeedMessage& message) {
     row.ended = at[3] == 2 ? 2 : at[3] == 1 ? 1 : 0;
     row.success = at[4] > 0;
     row.stepped_in = at[5] > 0;
-    row.cost.assign(at + kRow, at + kRow + costs);
-    row.sum.assign(at + kRow + costs, at + kRow + 2 * costs);
-    row.action.assign(at + kRow + 2 * costs, at + width);
+    row.cost.assign(at + kRowHead, at + kRowHead + costs);
+    row.sum.assign(at + kRowHead + costs, at + kRowHead + 2 * costs);
+    row.action.assign(at + kRowHead + 2 * costs, at + width);
     rows.push_back(std::move(row));
   }
   contacts.assign(at, at + 6 * count);
