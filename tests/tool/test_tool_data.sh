@@ -99,19 +99,12 @@ awk -v r="$(one return_mean score.json)" -v least="$(one return_min score.json)"
 "$tool" rollout --task two_state --episodes 3 --record rollout.npz > /dev/null || failed=1
 "$tool" data info rollout.npz | grep -q 'in 3 episodes' || { echo 'a recorded rollout is not read'; failed=1; }
 head -c 3000 ball_run.npz > short.npz
-wrong() {
-  status=$1 says=$2
-  shift 2
-  "$tool" data "$@" > out 2> err
-  [ $? -eq "$status" ] || { echo "data $*: the status is not $status"; cat err; failed=1; }
-  grep -q "$says" err || { echo "data $*: the error does not say '$says':"; cat err; failed=1; }
-}
-wrong 1 'not a complete archive' info short.npz
-wrong 1 'nearest is ball_run.npz' info bal_run.npz
-wrong 2 'nearest is ball_run' make bal_run
-wrong 2 'nearest is OfflineBallRun-v0' make OfflineBalRun-v0
-wrong 2 'no set of task jenga' make jenga --preset dsrl
-wrong 2 'end in .npz' make ball_run --out set.hdf5
-wrong 2 'are in every mixture' make ball_run --policy random
-wrong 2 'rows' make ball_run --rows 0
+wrong 1 'not a complete archive' data info short.npz
+wrong 1 'nearest is ball_run.npz' data info bal_run.npz
+wrong 2 'nearest is ball_run' data make bal_run
+wrong 2 'nearest is OfflineBallRun-v0' data make OfflineBalRun-v0
+wrong 2 'no set of task jenga' data make jenga --preset dsrl
+wrong 2 'end in .npz' data make ball_run --out set.hdf5
+wrong 2 'are in every mixture' data make ball_run --policy random
+wrong 2 'rows' data make ball_run --rows 0
 exit $failed

@@ -38,17 +38,10 @@ cmp -s a.rdm c.rdm && { echo 'another seed gives the same policy'; failed=1; }
 [ "$(one length_mean ball.json)" = 100.0 ] || { echo 'the episodes that measure have another length than the set'; cat ball.json; failed=1; }
 grep -q '"score":{"return":' ball.json || { echo 'there are no scores'; cat ball.json; failed=1; }
 
-wrong() {
-  status=$1 says=$2
-  shift 2
-  "$tool" learn "$@" > out 2> err
-  [ $? -eq "$status" ] || { echo "learn $*: the status is not $status"; cat err; failed=1; }
-  grep -q "$says" err || { echo "learn $*: the error does not say '$says':"; cat err; failed=1; }
-}
-wrong 2 'ppo_lag learns from its own decisions alone; td3_bc_lag' --from bandit.npz --algo ppo_lag --out x.rdm
-wrong 2 'nearest is td3_bc_lag' --from bandit.npz --algo td3_bc_la --out x.rdm
-wrong 2 'replay_rows: 100 has no place' --from bandit.npz --set replay_rows=100 --out x.rdm
-wrong 1 'nearest is bandit.npz' --from bandi.npz --out x.rdm
-wrong 2 'out' --from bandit.npz
-wrong 2 'steps' --from bandit.npz --steps 0 --out x.rdm
+wrong 2 'ppo_lag learns from its own decisions alone; td3_bc_lag' learn --from bandit.npz --algo ppo_lag --out x.rdm
+wrong 2 'nearest is td3_bc_lag' learn --from bandit.npz --algo td3_bc_la --out x.rdm
+wrong 2 'replay_rows: 100 has no place' learn --from bandit.npz --set replay_rows=100 --out x.rdm
+wrong 1 'nearest is bandit.npz' learn --from bandi.npz --out x.rdm
+wrong 2 'out' learn --from bandit.npz
+wrong 2 'steps' learn --from bandit.npz --steps 0 --out x.rdm
 exit $failed

@@ -20,3 +20,11 @@ same() {
   cmp -s a b || { echo "$2/progress.csv differs from $1's ($3)"; failed=1; }
   cmp -s "$1/policy.rdm" "$2/policy.rdm" || { echo "$2/policy.rdm differs from $1's ($3)"; failed=1; }
 }
+# wrong STATUS TEXT COMMAND...: the tool ends with that status, and its error has the text; else failed=1.
+wrong() {
+  status=$1 says=$2
+  shift 2
+  "$tool" "$@" > out 2> err
+  [ $? -eq "$status" ] || { echo "$*: the status is not $status"; cat err; failed=1; }
+  grep -q "$says" err || { echo "$*: the error does not say '$says':"; cat err; failed=1; }
+}

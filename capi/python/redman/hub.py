@@ -54,13 +54,15 @@ def card(given: Shown, evaluation: Optional[Evaluation] = None, repository: str 
     evaluation: what redman.evaluate has measured; else 100 episodes are played.
     """
     shown = _shown(given)
-    policy = shown.policy if isinstance(shown, Run) else shown
-    result = evaluation or (shown.judged() if isinstance(shown, Run) else evaluate(policy))
-    origin = policy.origin
-    name = shown.task if isinstance(shown, Run) else origin.task if origin else policy.info.task
-    algo = shown.algo if isinstance(shown, Run) else ""
-    options = shown.options if isinstance(shown, Run) else origin.options if origin else {}
-    learned = [f"`redman train` learned it with `{algo}`, seed {shown.seed}, in {shown.env_steps:,} control steps."] if isinstance(shown, Run) else []
+    options: Mapping[str, Any]
+    if isinstance(shown, Run):
+        policy, result = shown.policy, evaluation or shown.judged()
+        name, algo, options = shown.task, shown.algo, shown.options
+        learned = [f"`redman train` learned it with `{algo}`, seed {shown.seed}, in {shown.env_steps:,} control steps."]
+    else:
+        policy, result, origin = shown, evaluation or evaluate(shown), shown.origin
+        name, algo, options = (origin.task, "", origin.options) if origin else (policy.info.task, "", {})
+        learned = []
     return "\n".join([
         *_front_matter(name, algo, result), "", f"# {name}" + (f", {algo}" if algo else ""), "",
         f"A policy for the task `{name}` of redman: {_summary(name)}", "", *learned,
