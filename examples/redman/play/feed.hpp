@@ -2,11 +2,13 @@
 // --feed` makes a page of them, and `view --feed` shows them while they come.
 //
 // A message is u32 size of what follows, u32 size of a JSON text, the text, and float32 numbers, all little-endian.
-//   scene   JSON: members below, "record" the file of the page's button, "" without one; numbers: poses [worlds][shapes][7] of all shapes, position (m) and quaternion (x, y, z, w)
-//   frame   JSON: "contacts" and "points", how many, and "world", the one that they are of; numbers: poses [worlds][moving][7]
-//           of the shapes that are not fixed; rows [worlds][6 + 2 costs + actions]: reward, return, step, ended (1 by time, 2 terminated), success, stepped_in, each
-//           cost, its sum over the episode, the action; contacts [contacts][6], position (m), force (N); points [points][3] of
-//           what its cameras see (m), and the class of each [points]. "take", while it records: episodes, dropped, steps, pushed
+//   scene   JSON: members below, "record" the file of the page's button, "" without one; numbers: poses [worlds][shapes][7]
+//           of all shapes, position (m) and quaternion (x, y, z, w)
+//   frame   JSON: "contacts" and "points", how many, and "world", the one that they are of; "take", while it records:
+//           episodes, dropped, steps, pushed. Numbers: poses [worlds][moving][7] of the shapes that are not fixed; rows
+//           [worlds][6 + 2 costs + actions]: reward, return, step, ended (1 by time, 2 terminated), success, stepped_in,
+//           each cost, its sum over the episode, the action; contacts [contacts][6], position (m), force (N); points
+//           [points][3] of what its cameras see (m), and the class of each [points]
 #pragma once
 #include <optional>
 #include <string>
