@@ -314,13 +314,14 @@ void init_networks(const Networks& n, const ResolvedAgentConfig& resolved) {
     }
     if (!n.critic[i] && (i > 0 || !n.num_groups))
       recurrent_init({n.shape[i], i == Networks::kActor ? n.gru : GruShape()}, stream,
-                     static_cast<float>(last), n.net(i));
+                     static_cast<float>(last), resolved.memory_chunk(), n.net(i));
   }
   const auto last_scale = static_cast<float>(resolved.shared.last_layer_scale);
   for (int32_t g = 0; g < n.num_groups; ++g) {
     const uint32_t number = g == 0 ? 0 : kGroupsStream + static_cast<uint32_t>(g) - 1;
     Stream stream(resolved.config.seed, number, Purpose::kInit);
-    recurrent_init(n.group[g].net(), stream, last_scale, n.net(Networks::kActor) + n.group[g].offset);
+    recurrent_init(n.group[g].net(), stream, last_scale, resolved.memory_chunk(),
+                   n.net(Networks::kActor) + n.group[g].offset);
   }
   if (n.eyes.points) {
     Stream stream(resolved.config.seed, kEyesStream, Purpose::kInit);

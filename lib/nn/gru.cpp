@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/elementary.hpp"
 #include "nn/kernels.hpp"
 #include "nn/scratch.hpp"
 
@@ -156,10 +157,13 @@ void gru_tangent(const GruShape& shape, const float* params, const float* direct
   }
 }
 
-void gru_init(const GruShape& shape, Stream& stream, float* params) {
+void gru_init(const GruShape& shape, Stream& stream, int32_t span, float* params) {
   const double bound = 1 / std::sqrt(static_cast<double>(shape.units));
   for (size_t i = 0; i < shape.num_params(); ++i)
     params[i] = static_cast<float>(bound * stream.signed_unit());
+  float* const keep = params + shape.input_bias_offset() + shape.units;
+  for (int32_t i = 0; i < shape.units; ++i)
+    keep[i] = static_cast<float>(elementary::log(1 + std::max(span - 2, 0) * stream.uniform()));
 }
 
 RecurrentShape with_gru(const MlpShape& mlp, int32_t units) {
@@ -244,14 +248,15 @@ void recurrent_tangent(const RecurrentShape& shape, const float* params, const f
   kernels().gemm(g);
 }
 
-void recurrent_init(const RecurrentShape& shape, Stream& stream, float last_layer_scale, float* params) {
+void recurrent_init(const RecurrentShape& shape, Stream& stream, float last_layer_scale, int32_t span,
+                    float* params) {
   if (!shape.gru.units) return mlp_init(shape.mlp, stream, last_layer_scale, params);
   for (int32_t l = 0; l < shape.mlp.num_hidden; ++l) {
     const double bound = 1 / std::sqrt(static_cast<double>(shape.mlp.layer_in(l)));
     for (size_t i = shape.mlp.weight_offset(l); i < shape.mlp.weight_offset(l + 1); ++i)
       params[i] = static_cast<float>(bound * stream.signed_unit());
   }
-  gru_init(shape.gru, stream, params + shape.gru_offset());
+  gru_init(shape.gru, stream, span, params + shape.gru_offset());
   mlp_init(shape.head(), stream, last_layer_scale, params + shape.head_offset());
 }
 

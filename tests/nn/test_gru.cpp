@@ -245,6 +245,26 @@ TEST(Gru, AClearedStateCutsTheGradient) {
     EXPECT_NEAR(sum[i], whole[i], 1e-5f * (1 + std::abs(whole[i]))) << i;
 }
 
+// Units at rest keep their state for 2 to `span` steps, so that of the input of `span` steps ago something is left.
+TEST(Gru, AtFirstStatesLastForTheSpan) {
+  constexpr int32_t kUnits = 200, kSpan = 20;
+  const RecurrentShape shape = with_gru(make_shape(5, {}, 3), kUnits);
+  std::vector<float> params(shape.gru.num_params());
+  Stream stream(1, 0, Purpose::kTest);
+  gru_init(shape.gru, stream, kSpan, params.data());
+  const float* keep = params.data() + shape.gru.input_bias_offset() + kUnits;
+  double mean = 0;
+  for (int32_t i = 0; i < kUnits; ++i) {
+    const double steps = 1 / (1 - sigmoid(static_cast<double>(keep[i])));
+    EXPECT_GE(steps, 2 - 1e-5);
+    EXPECT_LE(steps, kSpan);
+    mean += steps / kUnits;
+  }
+  EXPECT_NEAR(mean, 0.5 * (2 + kSpan), 1);  // 2.8 standard errors of a uniform mean
+  gru_init(shape.gru, stream, 1, params.data());
+  for (int32_t i = 0; i < kUnits; ++i) EXPECT_EQ(keep[i], 0);
+}
+
 TEST(Gru, PassesTakeNoMemory) {
   const Case c = make_case({8}, 6, 9, 4, true);
   Owned own(c.shape, 36);

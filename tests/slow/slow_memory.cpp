@@ -1,7 +1,6 @@
 // Learners with a memory where it decides: recall, by the first order and in a trust region, and two_state with the state
 // shown in every fourth step, whose optimum with and without a memory is known.
 #include <cstdio>
-#include <cstring>
 
 #include "base/rng.hpp"
 #include "contract.hpp"
@@ -74,15 +73,11 @@ Judged learn(const char* task, const char* task_options, const char* algo, const
 
 }  // namespace
 
-// A seed may stay where the cue is of no use yet, as the choice is 20 steps away: of four seeds two (of ppo) or three
-// have to learn it.
+// The choice is 20 steps away, so each seed shows that gradients reach back over a memory that has learned nothing yet.
 TEST(SlowMemory, RecallsTheCue) {
-  for (const char* algo : {"ppo", "trpo", "cpo"}) {
-    int32_t learned = 0;
+  for (const char* algo : {"ppo", "trpo", "cpo"})
     for (uint64_t seed = 1; seed <= 4; ++seed)
-      learned += learn("recall", "", algo, "memory=gru:16", seed, 600000).ret >= 0.99;
-    EXPECT_GE(learned, std::strcmp(algo, "ppo") == 0 ? 2 : 3) << algo;
-  }
+      EXPECT_GE(learn("recall", "", algo, "memory=gru:16", seed, 600000).ret, 0.99) << algo << " " << seed;
   EXPECT_GE(learn("recall", "", "ppo", "history=20", 1, 600000).ret, 0.99);
   EXPECT_LE(learn("recall", "", "ppo", "", 1, 600000).ret,
             0.53);  // what a choice without the cue gives, and luck
