@@ -19,7 +19,7 @@ namespace {
 
 constexpr size_t kFirstSize = sizeof(rdm_actor_config);
 
-ActorConfig read_config(const rdm_actor_config* c) {
+ActorConfig read_actor_config(const rdm_actor_config* c) {
   const auto in = read_struct(c, kFirstSize, rdm_actor_config{}, "config");
   check_error(in);
   need(in.policy, "config.policy");
@@ -58,14 +58,14 @@ rdm_result rdm_actor_config_init(rdm_actor_config* c, size_t size) {
 rdm_result rdm_actor_config_memory(const rdm_actor_config* c, size_t* bytes) {
   return call_with(c, [&] {
     need(bytes, "bytes");
-    *bytes = Actor::memory(read_config(c)) + sizeof(rdm_actor);
+    *bytes = Actor::memory(read_actor_config(c)) + sizeof(rdm_actor);
   });
 }
 
 rdm_result rdm_actor_create(rdm_actor** out, const rdm_actor_config* c) {
   return call_with(c, [&] {
     need(out, "out");
-    const ActorConfig config = read_config(c);
+    const ActorConfig config = read_actor_config(c);
     rdm_actor* a = host_new<rdm_actor>(config.hooks);
     a->hooks = config.hooks;
     try {

@@ -56,7 +56,7 @@ bool names_fields(const OptionInput& option) {
   return key.ends_with("actor_obs") || key.ends_with("critic_obs") || is_group_set(option.key);
 }
 
-void read_config(const rdm_agent_config* c, Config* out) {
+void read_agent_config(const rdm_agent_config* c, Config* out) {
   const auto in = read_struct(c, kFirstAgentConfigSize, rdm_agent_config{}, "config");
   check_error(in);
   AgentConfig& a = out->agent;
@@ -123,7 +123,7 @@ rdm_result rdm_agent_config_memory(const rdm_agent_config* c, size_t* bytes) {
   return call_with(c, [&] {
     need(bytes, "bytes");
     Config config;
-    read_config(c, &config);
+    read_agent_config(c, &config);
     const size_t inner = Agent::memory(config.agent);  // validates the dimensions first
     Arena measure;
     carve_decision(measure, config.agent);
@@ -138,7 +138,7 @@ rdm_result rdm_agent_group_at(const rdm_agent_config* c, const char* groups, int
     need(name, "name");
     need_room(columns, capacity, "columns");
     Config config;
-    read_config(c, &config);
+    read_agent_config(c, &config);
     const HostScope scope(config.agent.hooks);
     const Vector<GroupSpec> all = parse_groups(config.agent, groups ? groups : "auto");
     const int32_t dim = config.agent.obs_dim, count = std::max(static_cast<int32_t>(all.size()), 1);
@@ -163,7 +163,7 @@ rdm_result create_agent(rdm_agent** out, const rdm_agent_config* c, const rdm_ra
   return call_with(c, [&] {
     need(out, "out");
     Config config;
-    read_config(c, &config);
+    read_agent_config(c, &config);
     if (ranks) config.agent.ranks = read_ranks(ranks);
     const HostHooks hooks = config.agent.hooks;
     const HostScope scope(hooks);

@@ -132,7 +132,7 @@ bool among_names(const char* algos, const char* name) {
   return false;
 }
 
-bool among(const char* algos, const AlgoRow& algo) {
+bool is_listed(const char* algos, const AlgoRow& algo) {
   return among_names(algos, algo.info.name) || (algo.alone && among_names(algos, algo.alone->info.name));
 }
 
@@ -221,12 +221,12 @@ void lay_preset(Options& o, const AgentConfig& config, const AlgoRow& algo) {
   const bool length = config.max_steps > 0 || below.episode_steps > 0;
   for (const PresetValue& v : kPresetValues) {
     if (same_name(v.key, "terminal_cost") && !length) continue;
-    if (v.algos ? !among(v.algos, algo) : algo.off_policy && for_on_policy(v.key)) continue;
+    if (v.algos ? !is_listed(v.algos, algo) : algo.off_policy && for_on_policy(v.key)) continue;
     if (same_name(v.preset, below.preset) && o.knows(v.key)) o.set_default(v.key, v.text);
   }
   if (same_name(below.preset, "omnisafe") && o.knows("minibatches")) {
     const int64_t rows = int64_t{kSharedRows.read(o).horizon} * config.num_envs;
-    const int64_t size = among(kTrustRegion, algo) ? 128 : 64;
+    const int64_t size = is_listed(kTrustRegion, algo) ? 128 : 64;
     o.set_default("minibatches", static_cast<double>(std::clamp<int64_t>(rows / size, 1, 1 << 20)));
   }
 }

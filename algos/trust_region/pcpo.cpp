@@ -6,13 +6,12 @@
 namespace rdm {
 namespace {
 
-struct ProjectionOptions {
+struct MetricOptions {
   bool kl;
 };
-constexpr auto kProjectionRows =
-    option_rows<ProjectionOptions>(row<&ProjectionOptions::kl, true, false>(basic(
-        text_option("projection", "kl", "kl|l2",
-                    "metric in which the step is projected onto the cost limit: kl (Fisher matrix) or l2"))));
+constexpr auto kMetricRows = option_rows<MetricOptions>(row<&MetricOptions::kl, true, false>(basic(
+    text_option("projection", "kl", "kl|l2",
+                "metric in which the step is projected onto the cost limit: kl (Fisher matrix) or l2"))));
 
 class Pcpo final : public Cpo {
  public:
@@ -21,7 +20,7 @@ class Pcpo final : public Cpo {
  protected:
   bool solve(double c) override {
     const TrustRegion& t = region();
-    const bool kl = kProjectionRows.read(options()).kl;
+    const bool kl = kMetricRows.read(options()).kl;
     const PcpoStep y = project_pcpo({t.q(), t.r(), c, t.delta(), kl ? t.s() : t.bb()});
     nu_ = y.multiplier;
     region().set_step(y.along_x, kl ? -y.multiplier : 0, kl ? 0 : -y.multiplier);
@@ -29,9 +28,9 @@ class Pcpo final : public Cpo {
   }
 };
 
-struct PcpoOptions : CpoOptions, ProjectionOptions {};
+struct PcpoOptions : CpoOptions, MetricOptions {};
 constexpr auto kPcpoRows =
-    option_rows<PcpoOptions>(kCpoRows, kProjectionRows).with<&TrustOptions::line_search_steps>(100);
+    option_rows<PcpoOptions>(kCpoRows, kMetricRows).with<&TrustOptions::line_search_steps>(100);
 
 }  // namespace
 

@@ -76,7 +76,7 @@ Flag flag_of(const CLI::Option& option) {
   return flag;
 }
 
-void collect(const CLI::App& app, const std::vector<std::string>& path, std::vector<Command>& out) {
+void gather_commands(const CLI::App& app, const std::vector<std::string>& path, std::vector<Command>& out) {
   Command command{path, app.get_description(), {}, {}, value_words(path.empty() ? "" : path.back(), true)};
   for (const CLI::Option* option : app.get_options())
     if (!option->get_positional() || !option->get_lnames().empty()) command.flags.push_back(flag_of(*option));
@@ -88,7 +88,7 @@ void collect(const CLI::App& app, const std::vector<std::string>& path, std::vec
   for (const CLI::App* child : children) {
     std::vector<std::string> longer = path;
     longer.push_back(child->get_name());
-    collect(*child, longer, out);
+    gather_commands(*child, longer, out);
   }
 }
 
@@ -208,7 +208,7 @@ std::string fish_script(const std::vector<Command>& commands) {
 
 Report run_completion(const CLI::App& app, const std::string& shell) {
   std::vector<Command> commands;
-  collect(app, {}, commands);
+  gather_commands(app, {}, commands);
   const std::string text = shell == "bash"  ? bash_script(commands)
                            : shell == "zsh" ? zsh_script(commands)
                                             : fish_script(commands);

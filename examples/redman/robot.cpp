@@ -56,7 +56,7 @@ struct RobotFlags {
   bool check = false;
 };
 
-Report show_robot(const RobotFlags& flags) {
+Report report_robot(const RobotFlags& flags) {
 #ifdef REDMAN_IMPORT
   const Import import = import_robot(flags.file, flags.import);
   const rdm_robot_def def = def_of(import);
@@ -155,7 +155,7 @@ void add_robot(CLI::App& app, Run& run) {
   command->add_option("--tips", f.tips, "links or sites of the fingertips: a,b,c; default: guessed");
   command->add_option("--mount", f.mount, "link, site or \"x y z roll pitch yaw\" that is mounted on an arm");
   command->add_option("--flange", f.flange, "link or site that carries a hand; none: no hand");
-  command->callback([&run, flags] { run = [flags] { return show_robot(*flags); }; });
+  command->callback([&run, flags] { run = [flags] { return report_robot(*flags); }; });
 }
 
 }  // namespace tool

@@ -47,7 +47,7 @@ struct Cell {
   std::string result() const { return path + ".json"; }
 };
 
-std::vector<std::string> words_of(const std::string& list) {
+std::vector<std::string> list_of(const std::string& list) {
   std::vector<std::string> words;
   for (size_t at = 0; at <= list.size();) {
     const size_t end = std::min(list.find(',', at), list.size());
@@ -60,7 +60,7 @@ std::vector<std::string> words_of(const std::string& list) {
 // "0..4" or "0,3,7".
 std::vector<uint64_t> read_seeds(const std::string& text) {
   std::vector<uint64_t> seeds;
-  for (const std::string& word : words_of(text)) {
+  for (const std::string& word : list_of(text)) {
     const size_t dots = word.find("..");
     uint64_t first = 0, last = 0;
     const bool good =
@@ -79,7 +79,7 @@ std::vector<std::vector<std::string>> variants_of(const std::vector<std::string>
   std::vector<std::vector<std::string>> all(1);
   for (const std::string& text : varied) {
     const size_t equals = text.find('=');
-    const auto values = words_of(equals == std::string::npos ? "" : text.substr(equals + 1));
+    const auto values = list_of(equals == std::string::npos ? "" : text.substr(equals + 1));
     if (equals == 0 || values.empty())
       throw Usage("--vary " + printable(text) + ": it is not key=value,value");
     std::vector<std::vector<std::string>> next;
@@ -104,7 +104,7 @@ std::string file_name(const std::string& text) {
 }
 
 std::vector<Cell> runs_of(const SweepFlags& flags) {
-  const auto tasks = words_of(flags.tasks), algos = words_of(flags.algos);
+  const auto tasks = list_of(flags.tasks), algos = list_of(flags.algos);
   const auto seeds = read_seeds(flags.seeds);
   const auto variants = variants_of(flags.varied);
   if (tasks.empty()) throw Usage("--tasks: there is none");
@@ -215,7 +215,7 @@ int claim(const Cell& c) {
 }
 
 // Its result goes to NAME.json, what it says to NAME.log, whose lock goes with it. It ends with this process.
-pid_t start(const SweepFlags& flags, const Cell& c, int log) {
+pid_t start_cell(const SweepFlags& flags, const Cell& c, int log) {
   const std::vector<std::string> words = command_of(flags, c);
   const std::string result = c.result();
   std::vector<char*> argv;
@@ -267,7 +267,7 @@ Ran run_cells(const SweepFlags& flags, const std::vector<Cell>& cells) {
         close(log);
         continue;
       }
-      running[start(flags, c, log)] = &c;
+      running[start_cell(flags, c, log)] = &c;
       std::fprintf(stderr, "%zu of %zu: %s\n", next, cells.size(), printable(c.path).c_str());
     }
     if (running.empty()) return ran;

@@ -72,7 +72,7 @@ void give_blocks(RunSettings& run) {
   run.agent.options.emplace_back("blocks", std::to_string(blocks));
 }
 
-Trainer begin(TrainFlags flags, const Ranks* ranks) {
+Trainer begin_run(TrainFlags flags, const Ranks* ranks) {
   RunSettings& run = flags.run;
   if (!run.save_recording.empty()) check_replaceable(run.save_recording);
   take_limit_from_sets(flags.sets, run.limits);
@@ -127,15 +127,15 @@ Trainer go_on(const TrainFlags& flags, const Ranks* ranks) {
   return trainer;
 }
 
-Trainer start(const TrainFlags& flags, const Ranks* ranks) {
-  return flags.resume.empty() ? begin(flags, ranks) : go_on(flags, ranks);
+Trainer begin_or_resume(const TrainFlags& flags, const Ranks* ranks) {
+  return flags.resume.empty() ? begin_run(flags, ranks) : go_on(flags, ranks);
 }
 
 // A rank that is not the first: it learns, and ends here.
 [[noreturn]] void follow_first(const TrainFlags& flags, Ranks& ranks) {
   int status = 0;
   try {
-    start(flags, &ranks).run();
+    begin_or_resume(flags, &ranks).run();
   } catch (const Usage&) {
     status = 2;  // the first rank says it
   } catch (const std::exception& e) {
@@ -211,7 +211,7 @@ std::string shields_text(const Json& json, const Evaluation& shielded) {
 
 // Of one process, or the first of several.
 Report train_alone(const TrainFlags& flags, const Ranks* ranks) {
-  Trainer trainer = start(flags, ranks);
+  Trainer trainer = begin_or_resume(flags, ranks);
   std::fprintf(stderr, "training in %s\n", printable(trainer.folder().path()).c_str());
   say_steps(trainer);
   trainer.run();

@@ -29,7 +29,7 @@ std::string code(const std::string& text) {
 }
 
 // Text of the library in a cell.
-std::string cell(const std::string& text) {
+std::string table_cell(const std::string& text) {
   std::string out;
   for (const char c : text)
     if (c == '<')
@@ -248,7 +248,7 @@ std::string observations_of(int32_t index) {
 std::string costs_of(int32_t index) {
   Table table({"cost column", "limit on its sum", "value in a control step (raw: the value in `cost_raw`)"});
   for (const rdm_cost_info& c : task_costs(index))
-    table.add({code(c.name), c.limit < 0 ? "-" : number_text(c.limit), cell(c.help)});
+    table.add({code(c.name), c.limit < 0 ? "-" : number_text(c.limit), table_cell(c.help)});
   return table.markdown();
 }
 
@@ -286,7 +286,8 @@ std::string option_rows_text(const std::vector<rdm_option_spec>& options, size_t
     auto same =
         std::find_if(groups.begin(), groups.end(), [&](const OptionGroup& g) { return g.key == key; });
     if (same == groups.end())
-      same = groups.insert(same, {key, default_text(o), values_of(o), cell(o.help), o.number, o.number, 0});
+      same = groups.insert(same,
+                           {key, default_text(o), values_of(o), table_cell(o.help), o.number, o.number, 0});
     same->low = std::min(same->low, o.number);
     same->high = std::max(same->high, o.number);
     ++same->count;

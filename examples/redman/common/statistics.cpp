@@ -43,7 +43,7 @@ double iqm_of_sorted(Sample& values) {
   return sum / static_cast<double>(count);
 }
 
-Sample joined(const Strata& strata) {
+Sample pooled(const Strata& strata) {
   Sample out;
   for (const Sample& s : strata) out.insert(out.end(), s.begin(), s.end());
   return out;
@@ -102,7 +102,7 @@ double iqm_of(Sample values) {
 }
 
 double iqm_of(const Strata& strata) {
-  return iqm_of(joined(strata));
+  return iqm_of(pooled(strata));
 }
 
 double cvar_of(Sample values, double share) {

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kDot = 0.004;  // m, a dot's radius; a pixel at least
 
-void cross(const double a[3], const double b[3], double out[3]) {
+void cross_product(const double a[3], const double b[3], double out[3]) {
   for (int i = 0; i < 3; ++i) out[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
 }
 
@@ -38,12 +38,12 @@ Projection::Projection(const rdm_camera_info& camera, int32_t width, int32_t hei
   }
   normalise(ahead_);
   const double back[3] = {-1, 0, 0};  // up of a camera that looks along its own
-  cross(ahead_, up, side_);
+  cross_product(ahead_, up, side_);
   if (!normalise(side_)) {
-    cross(ahead_, back, side_);
+    cross_product(ahead_, back, side_);
     normalise(side_);
   }
-  cross(ahead_, side_, down_);
+  cross_product(ahead_, side_, down_);
 }
 
 bool Projection::see(const float point[3], double at[3]) const {

@@ -44,7 +44,7 @@ struct Outline {
 };
 
 // From top to bottom.
-Solid turned(const std::vector<Outline>& outline) {
+Solid lathe(const std::vector<Outline>& outline) {
   Solid s;
   for (const Outline& o : outline)
     for (int i = 0; i < kAround; ++i) {
@@ -77,7 +77,7 @@ void add_arc(std::vector<Outline>& outline, double radius, double z, int begin, 
 Solid make_ellipsoid(const float radii[3]) {
   std::vector<Outline> outline;
   add_arc(outline, 1, 0, 1, -1);
-  Solid s = turned(outline);
+  Solid s = lathe(outline);
   for (size_t i = 0; i < s.points.size(); i += 3) {
     Vec normal;
     for (size_t k = 0; k < 3; ++k) {
@@ -99,7 +99,7 @@ Solid make_cylinder(float radius, float half_length, bool rounded) {
   } else {
     outline = {{0, h, 0, 1}, {r, h, 0, 1}, {r, h, 1, 0}, {r, -h, 1, 0}, {r, -h, 0, -1}, {0, -h, 0, -1}};
   }
-  return turned(outline);
+  return lathe(outline);
 }
 
 Solid make_box(const float half[3]) {

@@ -363,7 +363,7 @@ struct Sizes {
   size_t front = 0, back = 0, widest = 0;
 };
 // The size of the two buffers that layers read and write in turn.
-Sizes sizes_of(const std::vector<Layer>& layers) {
+Sizes buffer_sizes(const std::vector<Layer>& layers) {
   Sizes s;
   s.front = layers[0].in;
   for (size_t l = 0; l < layers.size(); ++l) {
@@ -393,7 +393,7 @@ const char* last_row(const std::vector<Layer>& layers) {
   return layers.size() % 2 ? "back" : "front";
 }
 std::string with_rows(const char* text, const std::vector<Layer>& layers) {
-  const Sizes sizes = sizes_of(layers);
+  const Sizes sizes = buffer_sizes(layers);
   return replaced(replaced(text, "FRONT", std::to_string(sizes.front)), "BACK", std::to_string(sizes.back));
 }
 
@@ -597,15 +597,15 @@ std::string head_text(const Network& network, const std::vector<Layer>& layers,
 
 size_t widest_of(const Layers& layers) {
   size_t widest =
-      std::max(sizes_of(layers.actor).widest, layers.eyes.empty() ? 0 : sizes_of(layers.eyes).widest);
+      std::max(buffer_sizes(layers.actor).widest, layers.eyes.empty() ? 0 : buffer_sizes(layers.eyes).widest);
   for (const Layer& layer : layers.memory) widest = std::max(widest, layer.in);
   return widest;
 }
 size_t stack_bytes(const Network& network, const Layers& layers, bool int8) {
-  const Sizes s = sizes_of(layers.actor);
+  const Sizes s = buffer_sizes(layers.actor);
   size_t floats = s.front + s.back;
   if (!layers.eyes.empty()) {
-    const Sizes e = sizes_of(layers.eyes);
+    const Sizes e = buffer_sizes(layers.eyes);
     floats += e.front + e.back + static_cast<size_t>(network.eyes.features);
   }
   floats += static_cast<size_t>(network.memory.size);

@@ -49,7 +49,7 @@ Body body_of(const Document& shape) {
   return body;
 }
 
-rdm_camera_info camera_of(const Document& camera, std::deque<std::string>& names) {
+rdm_camera_info read_camera(const Document& camera, std::deque<std::string>& names) {
   rdm_camera_info out = RDM_INIT(rdm_camera_info);
   names.push_back(text_at(camera, "name", RDM_TEXT_SIZE));
   out.name = names.back().c_str();
@@ -102,7 +102,7 @@ FeedScene::FeedScene(const FeedMessage& message) {
   }
   looks.names = std::make_shared<std::deque<std::string>>();
   for (const Document& camera : members_of(head, "cameras")) {
-    looks.cameras.push_back(camera_of(camera, *looks.names));
+    looks.cameras.push_back(read_camera(camera, *looks.names));
     mounted.push_back(flag_at(camera, "mounted"));
   }
   for (const Document& cost : members_of(head, "costs"))

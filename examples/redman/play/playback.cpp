@@ -28,7 +28,7 @@ Body body_at(const redman::Pool& pool, int32_t index) {
 }
 
 template <class T>
-void append(std::vector<T>& all, const redman::View<T>& row) {
+void append_row(std::vector<T>& all, const redman::View<T>& row) {
   all.insert(all.end(), row.begin(), row.end());
 }
 
@@ -64,8 +64,8 @@ void add_frame(Playback& p, const redman::Pool& pool) {
   }
   p.reward.push_back(pool.reward()[0]);
   p.episode_return.push_back(pool.episode_return()[0]);
-  append(p.cost, pool.cost()[0]);
-  append(p.episode_cost, pool.episode_cost()[0]);
+  append_row(p.cost, pool.cost()[0]);
+  append_row(p.episode_cost, pool.episode_cost()[0]);
   p.success.push_back(pool.success()[0]);
   size_t count = 0;
   redman::check(rdm_pool_get_contacts(pool.get(), 0, nullptr, 0, &count));

@@ -24,7 +24,7 @@ std::string masked(const std::string& bytes) {
   return little_endian((crc >> 15 | crc << 17) + 0xa282ead8u, 4);
 }
 
-std::string record(const Message& event) {
+std::string record_of(const Message& event) {
   const std::string length = little_endian(event.bytes().size(), 8);
   return length + masked(length) + event.bytes() + masked(event.bytes());
 }
@@ -53,7 +53,7 @@ std::string event_head(int64_t unix_seconds) {
   Message event;
   event.wide(1, static_cast<double>(unix_seconds));
   event.text(3, "brain.Event:2");
-  return record(event);
+  return record_of(event);
 }
 
 std::string event_row(const std::string& header, const std::string& row, int64_t unix_seconds) {
@@ -79,7 +79,7 @@ std::string event_row(const std::string& header, const std::string& row, int64_t
   event.wide(1, static_cast<double>(unix_seconds) + (std::isnan(total) ? 0 : total));
   event.integer(2, static_cast<int64_t>(steps));
   event.message(5, summary);
-  return record(event);
+  return record_of(event);
 }
 
 std::string event_bytes(const std::string& progress, int64_t unix_seconds) {

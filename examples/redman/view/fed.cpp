@@ -14,7 +14,7 @@ namespace {
 
 constexpr size_t kMostWaiting = 64;  // messages that are read ahead
 
-size_t bytes_of(const FeedFrame& f) {
+size_t memory_of(const FeedFrame& f) {
   size_t floats = f.poses.size() + f.contacts.size() + f.points.size();
   for (const FeedFrame::Row& r : f.rows) floats += 16 + r.cost.size() + r.sum.size() + r.action.size();
   return sizeof f + sizeof(float) * floats;
@@ -100,7 +100,7 @@ void Fed::take(FeedMessage&& message) {
   frames_.push_back(std::move(frame));
   steps_ += frames_.size() > 1;
   // the number of frames that fit is that of this one's size
-  for (const size_t most = std::max<size_t>(2, most_ / bytes_of(frames_.back())); frames_.size() > most;
+  for (const size_t most = std::max<size_t>(2, most_ / memory_of(frames_.back())); frames_.size() > most;
        ++first_)
     frames_.pop_front();
   if (newest || at_ < first_) at_ = newest ? last() : first_;

@@ -13,7 +13,7 @@
 namespace tool {
 namespace {
 
-constexpr size_t kPart = size_t{1} << 16;
+constexpr size_t kChunk = size_t{1} << 16;
 
 std::string random_token() {
   unsigned char bytes[16];
@@ -144,7 +144,7 @@ void ViewServer::read_messages(Connection& c, std::vector<Event>* events) {
   WebsocketReader::Message m;
   while (!c.ends && c.reader.next(&m)) {
     if (m.kind == kFrameText) events->push_back({Event::kText, c.number, std::move(m.payload)});
-    if (m.kind == kFramePing && c.out.size() < kPart) c.out += websocket_frame(kFramePong, m.payload);
+    if (m.kind == kFramePing && c.out.size() < kChunk) c.out += websocket_frame(kFramePong, m.payload);
     if (m.kind == kFrameClose || m.kind == kFrameBytes) {
       c.ends = true;
       c.out += websocket_frame(kFrameClose, "");
@@ -155,7 +155,7 @@ void ViewServer::read_messages(Connection& c, std::vector<Event>* events) {
 }
 
 void ViewServer::read(Connection& c, std::vector<Event>* events) {
-  char part[kPart];
+  char part[kChunk];
   const int64_t n = receive_some(c.socket, part, sizeof part);
   if (n < 0) c.gone = true;
   if (n <= 0 || c.ends) return;

@@ -26,7 +26,7 @@ std::string short_text(double v) {
 
 // Mean and deviation of value(item): "12.3 &plusmn; 0.4".
 template <class Items, class Value>
-std::string spread(const Items& items, Value value) {
+std::string mean_and_error(const Items& items, Value value) {
   Sample values;
   for (const auto& i : items) values.push_back(value(i));
   std::string out = short_text(mean_of(values));
@@ -64,18 +64,18 @@ std::string rank_row(const Configuration& c, const std::string& group) {
   out += cell(format("<b class=\"%s\">%s</b> <small>%zu of %zu</small>", feasible ? "yes" : "no",
                      feasible ? "within" : "over", good, c.runs.size()),
               "state");
-  out += cell(spread(c.outcomes, [](const Outcome& o) { return o.ret; }));
+  out += cell(mean_and_error(c.outcomes, [](const Outcome& o) { return o.ret; }));
   for (size_t k = 0; k < mean.costs.size(); ++k) {
     const CostOutcome& cost = mean.costs[k];
     if (k > 0 && cost.limit < 0) continue;
-    const std::string value =
-        spread(c.outcomes, [k](const Outcome& o) { return k < o.costs.size() ? o.costs[k].mean : 0; });
+    const std::string value = mean_and_error(
+        c.outcomes, [k](const Outcome& o) { return k < o.costs.size() ? o.costs[k].mean : 0; });
     out += cell(value + (cost.limit < 0 ? "" : format(" <small>/ %.4g</small>", cost.limit)),
                 cost.limit >= 0 && cost.mean > cost.limit ? "number bad" : "number");
   }
   out += cell(per_cent(mean.success)) + cell(per_cent(mean.falls)) + cell(format("%.0f", mean.length));
-  out += cell(spread(ends, [](const TrainingEnd& e) { return e.ret; }) + " @ " +
-              spread(ends, [](const TrainingEnd& e) { return e.cost; }));
+  out += cell(mean_and_error(ends, [](const TrainingEnd& e) { return e.ret; }) + " @ " +
+              mean_and_error(ends, [](const TrainingEnd& e) { return e.cost; }));
   double over = 0;
   for (const TrainingEnd& e : ends) over += e.over / static_cast<double>(ends.size());
   out += cell(per_cent(over));
