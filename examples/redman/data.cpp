@@ -103,9 +103,9 @@ DataFile data_file(const std::string& path, const char* what) {
     if (file_ends_in(path, end))
       throw Usage(std::string(what) + ' ' + printable(path) +
                   ": such files are read and written in Python: python3 -m redman data convert FROM TO");
-  throw Usage(
-      std::string(what) + ' ' + printable(path) +
-      ": its name does not end in .npz or .mcap, nor in .hdf5 or .minari for python3 -m redman data convert");
+  throw Usage(std::string(what) + ' ' + printable(path) +
+              ": its name does not end in .npz or .mcap, nor in .hdf5, .minari or .lerobot for python3 -m "
+              "redman data convert");
 }
 
 Report run_data_convert(const DataConvertFlags& flags) {

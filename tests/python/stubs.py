@@ -1,4 +1,4 @@
-"""What the adapters take from Stable-Baselines3, OmniSafe and Safety-Gymnasium, as small as their contracts allow, for
+"""What the adapters take from Stable-Baselines3, OmniSafe and Safety-Gymnasium, and pyarrow, as small as their contracts allow, for
 where none of them is installed. Each function does nothing where the real one is."""
 import sys
 import types
@@ -130,3 +130,77 @@ def omnisafe():
     _module("omnisafe.envs.core", CMDP=CMDP, ENV_REGISTRY=Registry([isaac]))
     _module("omnisafe.envs.safety_isaac_gym_env", SafetyIsaacGymEnv=isaac)
     _module("omnisafe.utils.config", get_default_kwargs_yaml=lambda algo, env_id, kind: Settings(on_policy))
+
+
+def pyarrow():
+    """Tables of numbers, texts and lists of fixed length, in files of numpy's that a real reader of Parquet could not read."""
+    if not _missing("pyarrow"):
+        return
+
+    class Array:
+        def __init__(self, rows):
+            self.rows = rows
+
+        def combine_chunks(self):
+            return self
+
+        def flatten(self):
+            assert self.rows.ndim == 2, "flatten() of a column without lists"
+            return Array(self.rows.reshape(-1))
+
+        def to_numpy(self, zero_copy_only=True):
+            assert self.rows.ndim == 1, "to_numpy() of lists gives objects"
+            return self.rows
+
+    class FixedSizeListArray(Array):
+        @classmethod
+        def from_arrays(cls, values, list_size):
+            return cls(values.rows.reshape(-1, list_size))
+
+    class Table:
+        def __init__(self, columns, metadata=None):
+            self.columns, self.schema, self.metadata = columns, list(columns), metadata
+
+        column_names = property(lambda self: self.schema)
+
+        def column(self, name):
+            return self.columns[name]
+
+        def slice(self, offset, length):
+            return Table({name: Array(c.rows[offset:offset + length]) for name, c in self.columns.items()})
+
+        def replace_schema_metadata(self, metadata):
+            return Table(self.columns, metadata)
+
+    class ParquetWriter:
+        def __init__(self, where, schema):
+            self.where, self.schema, self.parts = where, schema, []
+
+        def __enter__(self):
+            return self
+
+        def write_table(self, table):
+            assert table.schema == self.schema
+            self.parts.append(table)
+
+        def __exit__(self, *_):
+            rows = {name: np.concatenate([t.columns[name].rows for t in self.parts]) for name in self.schema}
+            with open(self.where, "wb") as file:
+                np.savez(file, **{str(i): rows[name] for i, name in enumerate(self.schema)}, names=self.schema, groups=len(self.parts))
+
+    def write_table(table, where):
+        with ParquetWriter(where, table.schema) as writer:
+            writer.write_table(table)
+
+    def read_table(where):
+        with np.load(where) as file:
+            return Table({name: Array(file[str(i)]) for i, name in enumerate(file["names"].tolist())})
+
+    def array(values):
+        rows = np.array(values)
+        assert rows.ndim == 1 or isinstance(values, list), "array() of a matrix"
+        return Array(rows)
+
+    _module("pyarrow.parquet", ParquetWriter=ParquetWriter, write_table=write_table, read_table=read_table)
+    vars(sys.modules["pyarrow"]).update(array=array, table=lambda columns: Table(dict(columns)), FixedSizeListArray=FixedSizeListArray)
+

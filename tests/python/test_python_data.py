@@ -8,9 +8,11 @@ from pathlib import Path
 
 import numpy as np
 import redman
+import stubs
 from redman import data
 from redman._tool import run_tool, tool_path
 
+stubs.pyarrow()
 try:
     import h5py
 except ImportError:
@@ -36,7 +38,7 @@ class Data(unittest.TestCase):
     def test_arrays_come_back_to_the_byte(self):
         for task in ("two_state", "ball_run", "hand_over_safe_finger"):
             one = data.load(self.path / f"{task}.npz")
-            for end in ["npz", "mcap"] + (["hdf5", "minari"] if h5py else []):
+            for end in ["npz", "mcap", "lerobot"] + (["hdf5", "minari"] if h5py else []):
                 with self.subTest(task=task, end=end):
                     target = self.path / f"{task}_again.{end}"
                     done = data.convert(self.path / f"{task}.npz", target)
@@ -96,6 +98,70 @@ class Data(unittest.TestCase):
             self.assertEqual(file["episode_0/infos/cost"].shape[1], 3)
         said = json.loads((self.path / "m.minari/data/metadata.json").read_text())
         self.assertEqual(said["redman"]["format"], "redman data 1")
+
+    def test_lerobot_has_the_published_layout(self):
+        data.convert(self.path / "hand_over_safe_finger.npz", self.path / "l.lerobot")
+        arrays, folder = data.load(self.path / "hand_over_safe_finger.npz"), self.path / "l.lerobot"
+        info = json.loads((folder / "meta/info.json").read_text())
+        self.assertEqual((info["codebase_version"], info["fps"]), ("v3.0", 15))  # 4 control steps of 1/60 s
+        self.assertEqual((info["total_frames"], info["total_episodes"]), (len(arrays["obs"]), len(arrays["episode_begin"]) - 1))
+        widths = {name: f["shape"] for name, f in info["features"].items()}
+        self.assertEqual(widths["observation.state"], [arrays["obs"].shape[1]])
+        self.assertEqual(widths["next.reward"], [1])
+        for name in ("timestamp", "frame_index", "episode_index", "index", "task_index"):
+            self.assertEqual(widths[name], [1])
+        for name, f in info["features"].items():
+            self.assertTrue(f["names"] is None or len(f["names"]) == f["shape"][0], name)
+        import pyarrow.parquet as pq
+        rows = pq.read_table(str(folder / info["data_path"].format(chunk_index=0, file_index=0)))
+        self.assertEqual(sorted(rows.column_names), sorted(widths))
+        episodes = pq.read_table(str(folder / "meta/episodes/chunk-000/file-000.parquet"))
+        ends = episodes.column("dataset_to_index").combine_chunks().to_numpy(zero_copy_only=False)
+        self.assertEqual(list(ends), list(arrays["episode_begin"][1:]))
+        times = rows.column("timestamp").combine_chunks().to_numpy(zero_copy_only=False)
+        self.assertEqual(times[int(ends[0])], 0)  # each episode begins anew
+        self.assertAlmostEqual(float(times[1]), 1 / 15, places=6)
+        self.assertEqual(json.loads((folder / "meta/stats.json").read_text())["action"]["count"], [len(arrays["obs"])])
+
+    def test_lerobot_files_are_filled_with_whole_episodes(self):
+        from redman import _lerobot
+        arrays, kept = data.load(self.path / "two_state.npz"), _lerobot._FILE_MB
+        _lerobot._FILE_MB = 1e-3
+        try:
+            data.save(arrays, self.path / "many.lerobot")
+        finally:
+            _lerobot._FILE_MB = kept
+        self.assertGreater(len(list((self.path / "many.lerobot/data/chunk-000").iterdir())), 3)
+        self.assert_same(arrays, data.load(self.path / "many.lerobot"))
+
+    def test_a_lerobot_folder_of_another_writer(self):
+        import pyarrow as pa
+        import pyarrow.parquet as pq
+        folder = self.path / "theirs.lerobot"
+        rng = np.random.default_rng(0)
+        features = {"observation.state": (2, "float32"), "observation.effort": (1, "float64"), "action": (1, "float32"), "next.done": (1, "bool"),
+                    "episode_index": (1, "int64"), "frame_index": (1, "int64")}
+        info = {"codebase_version": "v3.0", "fps": 30, "features": {n: {"dtype": d, "shape": [w], "names": None} for n, (w, d) in features.items()}}
+        info["features"]["observation.images.wrist"] = {"dtype": "video", "shape": [64, 64, 3], "names": None}
+        (folder / "meta").mkdir(parents=True)
+        (folder / "data/chunk-000").mkdir(parents=True)
+        (folder / "meta/info.json").write_text(json.dumps(info))
+        state = rng.normal(size=(5, 2)).astype(np.float32)
+        columns = {"observation.state": pa.FixedSizeListArray.from_arrays(pa.array(state.reshape(-1)), 2), "observation.effort": pa.array(np.arange(5.0)),
+                   "action": pa.array(np.zeros(5, np.float32)), "next.done": pa.array(np.array([0, 0, 1, 0, 0], bool)),
+                   "episode_index": pa.array(np.array([0, 0, 0, 1, 1])), "frame_index": pa.array(np.array([0, 1, 2, 0, 1]))}
+        pq.write_table(pa.table(columns), str(folder / "data/chunk-000/file-000.parquet"))
+        with self.assertWarnsRegex(UserWarning, "observation.images.wrist|no next.reward") as caught:
+            arrays = data.load(folder)
+        self.assertEqual(len(caught.warnings), 2)
+        self.assertEqual(arrays["obs"].tolist(), [[*map(float, s), float(i)] for i, s in enumerate(state)])
+        self.assertTrue(np.isnan(arrays["reward"]).all())
+        self.assertEqual(list(arrays["terminated"]), [0, 0, 1, 0, 0])
+        self.assertEqual(data.unfinished(arrays), [1])
+        info["codebase_version"] = "v2.1"
+        (folder / "meta/info.json").write_text(json.dumps(info))
+        with self.assertRaisesRegex(redman.FormatError, "version is v2.1"):
+            data.load(folder)
 
     def test_the_command(self):
         words = [sys.executable, "-m", "redman", "data", "convert", str(self.path / "two_state.npz"), str(self.path / "c.hdf5"), "--json"]

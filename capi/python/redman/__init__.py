@@ -25,7 +25,7 @@ WHAT IS THERE. help(redman.Pool) and so on tell more.
     your own        Rows, Costs: rewards and costs of train and evaluate; Task, RowTask, Verdict, Worlds, SceneBuilder; Robot.create,
                     Object.create, a .task file; check_task, c_function
     environments    redman.gym, redman.sb3, redman.safety, redman.omnisafe, redman.pettingzoo; make, make_vec
-    data sets       redman.data: load, save and convert sets of episodes (.npz, .hdf5, .minari, .mcap); data.score
+    data sets       redman.data: load, save and convert sets of episodes (.npz, .hdf5, .minari, .lerobot, .mcap); data.score
     sharing         redman.hub: a policy with its card, in a folder or on the hub of models
     records         Algo, Build, Camera, Cost, Field, Joint, MapInfo, Note, Object, Option, PlannerSpec, PolicyInfo, PoolStats,
                     Poses, PretrainReport, RayHit, RecordingInfo, Robot, Shape, ShieldStats, Spec, TaskInfo

@@ -39,7 +39,7 @@ def main() -> None:
     """Becomes the tool, with the arguments of this command. REDMAN_TOOL, which may name this very command, is not read.
     `data convert` of HDF5 files is done here."""
     words = sys.argv[1:]
-    if words[:2] == ["data", "convert"] and any(w.lower().endswith((".hdf5", ".h5", ".minari")) for w in words):
+    if words[:2] == ["data", "convert"] and any(w.lower().endswith((".hdf5", ".h5", ".minari", ".lerobot")) for w in words):
         from . import data
         from ._error import Error
         try:

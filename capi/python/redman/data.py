@@ -1,13 +1,13 @@
-"""Data sets in the forms that other libraries read: HDF5 of D4RL and DSRL, and Minari. Experimental.
+"""Data sets in the forms that other libraries read: HDF5 of D4RL and DSRL, Minari, LeRobot. Experimental.
 
     from redman import data
-    arrays = data.load("set.npz")                 # a dict of numpy arrays; also .hdf5 of DSRL, a .minari folder, .mcap
+    arrays = data.load("set.npz")                 # a dict of numpy arrays; also .hdf5 of DSRL, .minari and .lerobot folders, .mcap
     data.save(arrays, "set.hdf5")                 # observations, next_observations, actions, rewards, costs, terminals, timeouts
     data.convert("set.npz", "set.minari")         # what `python -m redman data convert set.npz set.minari` does
     data.hash(arrays)                             # the same that `redman data info` prints
 
-HDF5 needs h5py. A time limit is never stored as a termination. What a form has no place for (labels, all cost columns, who
-played) goes into a group `redman` of the same file, so that arrays come back to the byte.
+HDF5 and Minari need h5py, LeRobot needs pyarrow. A time limit is never stored as a termination. What a form has no place for (labels, all cost columns, who
+played) goes into a group or file `redman` of the same set, so that arrays come back to the byte.
 """
 from __future__ import annotations
 
@@ -22,6 +22,7 @@ from typing import Any, Union
 import numpy as np
 import numpy.typing as npt
 
+from . import _lerobot
 from ._error import ArgumentError, FormatError, UnsupportedError
 from ._files import must_exist
 from ._tool import run_tool
@@ -46,9 +47,10 @@ def _h5py() -> ModuleType:
 
 def _kind(path: FilePath) -> str:
     end = Path(path).suffix.lower()
-    kind = {".npz": "npz", ".mcap": "mcap", ".hdf5": "dsrl", ".h5": "dsrl", ".minari": "minari"}.get(end)
+    kind = {".npz": "npz", ".mcap": "mcap", ".hdf5": "dsrl", ".h5": "dsrl", ".minari": "minari",
+            ".lerobot": "lerobot"}.get(end)
     if kind is None:
-        raise ArgumentError(f"{os.fspath(path)}: its name does not end in .npz, .mcap, .hdf5, .h5 or .minari")
+        raise ArgumentError(f"{os.fspath(path)}: its name does not end in .npz, .mcap, .hdf5, .h5, .minari or .lerobot")
     return kind
 
 
@@ -290,12 +292,12 @@ def load(path: FilePath) -> Arrays:
         with tempfile.TemporaryDirectory() as folder:
             run_tool("data", "convert", "--keep-unfinished", os.fspath(path), f"{folder}/set.npz", why="a data set of an MCAP file")
             return _completed(_load_npz(f"{folder}/set.npz"), os.fspath(path))
-    read = {"npz": _load_npz, "dsrl": _load_dsrl, "minari": _load_minari}[kind]
+    read = {"npz": _load_npz, "dsrl": _load_dsrl, "minari": _load_minari, "lerobot": _lerobot.load}[kind]
     return _completed(read(path), os.fspath(path))
 
 
 def save(arrays: Arrays, path: FilePath) -> None:
-    """Writes a set in the form that follows from the name: .npz, .hdf5 or .h5 (D4RL and DSRL), .minari (a folder), .mcap."""
+    """Writes a set in the form that follows from the name: .npz, .hdf5 or .h5 (D4RL and DSRL), .minari and .lerobot (folders), .mcap."""
     kind = _kind(path)
     arrays = _completed(arrays, "data")
     if kind == "mcap":
@@ -303,7 +305,8 @@ def save(arrays: Arrays, path: FilePath) -> None:
             _save_npz(arrays, f"{folder}/set.npz")
             run_tool("data", "convert", "--keep-unfinished", f"{folder}/set.npz", os.fspath(path), why="an MCAP file")
         return
-    {"npz": _save_npz, "dsrl": _save_dsrl, "minari": _save_minari}[kind](arrays, path)
+    {"npz": _save_npz, "dsrl": _save_dsrl, "minari": _save_minari,
+     "lerobot": _lerobot.save}[kind](arrays, path)
 
 
 def convert(source: FilePath, target: FilePath, keep_unfinished: bool = False) -> dict[str, Any]:
