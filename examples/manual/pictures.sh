@@ -93,6 +93,8 @@ catch_underarm_learned trained catch_underarm_safe_finger close 6 320x240 0 40
 grasp_learned trained grasp close 6 320x240 0 36
 reorient_learned trained reorient close 6 320x240 0 73
 hand_over_wall_learned trained hand_over_wall close 6 320x240 0 48 --seed 1
+hand_over_wall_bare trained hand_over_wall close 6 240x180 2 48 --seed 14
+hand_over_wall_shielded trained hand_over_wall close 6 240x180 2 48 --seed 14 --shield predict
 pick_bottles_learned trained pick_bottles close 4 360x300 0 78
 clean_house_learned trained clean_house front 6 320x240 0 480
 T
