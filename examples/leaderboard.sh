@@ -17,8 +17,8 @@ csv=$results/leaderboard.csv page=$results/leaderboard.md
 mkdir -p "$out" "$results"
 names() { "$redman" "$1" --json | grep -o "{\"name\":\"[a-z0-9_]*\",\"summary\"" | cut -d'"' -f4; }
 tasks=${TASKS:-$(names tasks)}
-# A team needs a task with groups: its rows are on its own page (manual/teams.md).
-algos=${ALGOS:-$(names algos | grep -v -x -e mappo -e mappo_lag -e happo -e macpo -e ippo -e ippo_lag)}
+# A team needs a task with groups, and learners from data sets need those: their rows are on their own pages (manual/teams.md, offline.md).
+algos=${ALGOS:-$(names algos | grep -v -x -e mappo -e mappo_lag -e happo -e macpo -e ippo -e ippo_lag -e td3_bc_lag -e cpq -e bcq_lag -e coptidice)}
 first=${SEEDS:-0..4} last=${SEEDS:-0..4}
 first=${first%%..*} last=${last##*..}
 

@@ -92,6 +92,8 @@ class VecEnv(_VecEnv):
         w, no = self.worlds, np.zeros(self.num_envs, bool)
         nothing = self._infos(np.zeros_like(w.cost), no, w.status, w.episode_status, no, self._nothing(w.shielded()))
         self.reset_infos: list[dict[str, Any]] = nothing
+        self._first_info = nothing[0]
+        self._first_info["costs"].flags.writeable = False  # of all later ones too
         for sums in (self._return, self._length, self._costs, self._success):
             sums[...] = 0
         return np.array(self.pool.obs)
@@ -111,11 +113,8 @@ class VecEnv(_VecEnv):
         self._length += 1
         self._costs += costs
         self._success |= w.success
-        for i in np.flatnonzero(ended).tolist() if ended.any() else []:
-            infos[i]["terminal_observation"] = w.final_obs[i].copy()
-            infos[i].update(self._finished(i))
-            no = np.zeros(1, bool)
-            self.reset_infos[i] = self._infos(np.zeros_like(costs[:1]), no, no, no, no, self._nothing(w.shielded()))[0]
+        if ended.any():
+            self._finish(ended, infos)
         return w.obs.copy(), reward.astype(np.float32, copy=False), ended, infos
 
     @staticmethod
@@ -136,15 +135,16 @@ class VecEnv(_VecEnv):
         """The entries about a shield after a reset."""
         return {key: np.full_like(rows, "" if rows.dtype == object else 0) for key, rows in shielded.items()}
 
-    def _finished(self, i: int) -> dict[str, Any]:
-        """The further entries of the info at the end of an episode; its sums begin anew."""
-        told = {"episode": {"r": round(float(self._return[i]), 6), "l": int(self._length[i]),
-                            "t": round(time.time() - self._began, 6)},
-                "is_success": bool(self._success[i]),
-                "episode_cost": dict(zip(self.cost_names, self._costs[i].tolist()))}
-        for sums in (self._return, self._length, self._costs, self._success):
-            sums[i] = 0
-        return told
+    def _finish(self, ended: Array, infos: list[dict[str, Any]]) -> None:
+        """Adds the further entries of the infos at the end of episodes, whose sums begin anew."""
+        sums = (self._return, self._length, self._costs, self._success)
+        seconds = round(time.time() - self._began, 6)
+        for i, last, ret, length, costs, won in zip(np.flatnonzero(ended).tolist(), self.worlds.final_obs[ended], *(s[ended].tolist() for s in sums)):
+            infos[i].update(terminal_observation=last, episode={"r": round(ret, 6), "l": length, "t": seconds}, is_success=won,
+                            episode_cost=dict(zip(self.cost_names, costs)))
+            self.reset_infos[i] = dict(self._first_info)
+        for rows in sums:
+            rows[ended] = 0
 
     def close(self) -> None:
         """Destroys the worlds."""
