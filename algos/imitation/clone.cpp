@@ -154,7 +154,7 @@ CloneReport clone_actor(const ResolvedAgentConfig& resolved, const DemoRows& giv
       const double train = 2 / dim * sum / out.train_rows;
       const double held = out.validation_rows > 0
                               ? 2 / dim * regression.loss(demo, held_back, demo.items() - learned, false)
-                              : 0;
+                              : kNothing;
       if (how.train_loss && e < how.capacity) how.train_loss[e] = train;
       if (how.validation_loss && e < how.capacity) how.validation_loss[e] = held;
       out.epochs = e + 1;

@@ -8,6 +8,7 @@
 // remembers before each is found anew in each epoch. Of one episode paths are held back.
 #pragma once
 #include "algos/imitation/regression.hpp"
+#include "algos/rollout/episodes.hpp"
 #include "base/cancel.hpp"
 
 namespace rdm {
@@ -26,7 +27,7 @@ struct CloneReport {
   int32_t epochs = 0, best_epoch = 0;
   bool stopped = false;
   int32_t train_rows = 0, validation_rows = 0;
-  double train_loss = 0, validation_loss = 0;
+  double train_loss = 0, validation_loss = kNothing;
 };
 
 // All that it changes is the actor's block with its optimiser and the statistics; nothing when it throws.

@@ -6,6 +6,7 @@
 // in order, as everywhere (learner.hpp).
 #pragma once
 #include "algos/core/batch_workers.hpp"
+#include "algos/rollout/episodes.hpp"
 #include "base/cancel.hpp"
 
 namespace rdm {
@@ -19,7 +20,7 @@ struct PretrainOptions {
 
 struct PretrainReport {
   int32_t train_rows = 0, validation_rows = 0;
-  double train_loss = 0, validation_loss = 0, accuracy = 0, most_common = 0;
+  double train_loss = 0, validation_loss = kNothing, accuracy = 0, most_common = 0;
 };
 
 // What is minimised, of the listed clouds, and its gradient: params [the encoder's, then the head's], grad

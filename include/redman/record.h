@@ -155,7 +155,7 @@ typedef struct rdm_clone_config { /* how rdm_agent_clone learns */
   int32_t capacity;           /* entries of the two arrays below */
   double *train_loss;         /* [capacity] of each epoch, mean squared error of an entry; NULL:
                                * not wanted */
-  double *validation_loss;    /* [capacity] likewise, after it */
+  double *validation_loss;    /* [capacity] likewise, after it; NaN without validation */
 } rdm_clone_config;
 RDM_API rdm_result rdm_clone_config_init(rdm_clone_config *how,
                                          size_t size); /* defaults into the first `size` bytes */
@@ -168,7 +168,7 @@ typedef struct rdm_clone_report { /* what rdm_agent_clone did */
   int64_t train_rows;         /* count */
   int64_t validation_rows;    /* count */
   double train_loss;          /* of the best epoch, mean squared error of an entry */
-  double validation_loss;     /* likewise, 0 without validation */
+  double validation_loss;     /* likewise, NaN without validation */
 } rdm_clone_report;
 /* Behaviour cloning: the actor's mean is fitted to the labels by Adam on minibatches, and the
  * weights with the least validation loss are kept; critics and multipliers stay, and the actor's

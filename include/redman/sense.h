@@ -161,7 +161,7 @@ typedef struct rdm_pretrain_report { /* what rdm_agent_pretrain did */
   int32_t validation_rows;    /* clouds */
   int32_t reserved;           /* 0 */
   double train_loss;          /* of the last epoch, mean cross-entropy of a point, nats */
-  double validation_loss;     /* likewise, over the clouds held back; 0 without these */
+  double validation_loss;     /* likewise, over the clouds held back; NaN without these */
   double accuracy;            /* share of points classified correctly, of the clouds held back;
                                * without these, of all clouds */
   double most_common;         /* accuracy of always answering with the most common label */

@@ -135,6 +135,18 @@ TEST(Clone, StopsEarlyAndKeepsTheBest) {
   EXPECT_EQ(saved(*a), saved(*best));
 }
 
+TEST(Clone, ALossThatWasNotMeasuredIsNaN) {
+  const Lesson lesson;
+  double held[] = {1, 1};
+  CloneOptions how;
+  how.epochs = how.capacity = 2, how.validation = 0, how.validation_loss = held;
+  const CloneReport r = setup().make()->clone(lesson.rows(), how);
+  EXPECT_EQ(r.validation_rows, 0);
+  EXPECT_EQ(r.best_epoch, 2);
+  EXPECT_GT(r.train_loss, 0);
+  for (const double v : {r.validation_loss, held[0], held[1]}) EXPECT_TRUE(std::isnan(v));
+}
+
 TEST(Clone, RefusalsChangeNothing) {
   const Lesson lesson;
   const AgentPtr a = setup().make();

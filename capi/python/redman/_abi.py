@@ -2213,7 +2213,7 @@ class PretrainReport(Record):
     train_rows: clouds
     validation_rows: clouds
     train_loss: of the last epoch, mean cross-entropy of a point, nats
-    validation_loss: likewise, over the clouds held back; 0 without these
+    validation_loss: likewise, over the clouds held back; NaN without these
     accuracy: share of points classified correctly, of the clouds held back; without these, of all clouds
     most_common: accuracy of always answering with the most common label
     """
@@ -2234,7 +2234,7 @@ class rdm_pretrain_report(Structure):
     validation_rows: clouds
     reserved: 0
     train_loss: of the last epoch, mean cross-entropy of a point, nats
-    validation_loss: likewise, over the clouds held back; 0 without these
+    validation_loss: likewise, over the clouds held back; NaN without these
     accuracy: share of points classified correctly, of the clouds held back; without these, of all clouds
     most_common: accuracy of always answering with the most common label
     """
@@ -3015,7 +3015,7 @@ class rdm_clone_config(Structure):
     feed_normalizer: flag: the statistics of observations are first set to the recording's, default 1
     capacity: entries of the two arrays below
     train_loss: [capacity] of each epoch, mean squared error of an entry; NULL: not wanted
-    validation_loss: [capacity] likewise, after it
+    validation_loss: [capacity] likewise, after it; NaN without validation
     """
 
     struct_size: int
@@ -3057,7 +3057,7 @@ class CloneReport(Record):
     train_rows: count
     validation_rows: count
     train_loss: of the best epoch, mean squared error of an entry
-    validation_loss: likewise, 0 without validation
+    validation_loss: likewise, NaN without validation
     """
 
     epochs: int
@@ -3079,7 +3079,7 @@ class rdm_clone_report(Structure):
     train_rows: count
     validation_rows: count
     train_loss: of the best epoch, mean squared error of an entry
-    validation_loss: likewise, 0 without validation
+    validation_loss: likewise, NaN without validation
     """
 
     struct_size: int

@@ -140,9 +140,10 @@ rdm_clone_report clone(const TeachSettings& s, redman::Agent& agent, const redma
   how.validation = s.validation;
   how.seed = seed;
   const rdm_clone_report report = as_usage([&] { return redman::clone(agent, recording, how); });
-  std::fprintf(stderr, "cloned %lld rows in %d epochs: loss %.5f, held back %.5f\n",
-               static_cast<long long>(report.train_rows), report.epochs, report.train_loss,
-               report.validation_loss);
+  std::fprintf(
+      stderr, "cloned %lld rows in %d epochs: loss %.5f, %s\n", static_cast<long long>(report.train_rows),
+      report.epochs, report.train_loss,
+      report.validation_rows ? format("held back %.5f", report.validation_loss).c_str() : "none held back");
   return report;
 }
 
