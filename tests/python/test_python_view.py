@@ -224,6 +224,73 @@ class OfAPool(unittest.TestCase):
             thread.join(30)
         self.assertNotIn("step", vars(pool))
 
+    def test_a_hand_leads_a_finger_and_holds_it(self):
+        pool = redman.Pool("hand_over_safe_finger", num_envs=2, options={"max_steps": 1000})
+        pool.reset()
+        window = self.open(pool, env=1)
+        page = self.look(window)
+        page.until(lambda said: "numbers" in said)
+        self.assertEqual((page.scene["leads"], page.scene["shields"]), (True, False))
+        page.ask(do="speed", times=100)
+        names = [shape["name"] for shape in page.scene["shapes"]]
+        tip = names.index("right_ff_distal")
+        for _ in range(20):
+            pool.step(pool.baseline("hold"))
+        start = pool.poses(1)[tip][:3]
+        to = start + [0, 0, 0.02]
+        page.ask(do="grab", world=0, shape=tip, local=[0, 0, 0], to=to.tolist(), newton=3, reach=0.5, leads=True)
+        wait(lambda: window._state["lead"] is not None)
+        self.assertIsNone(window._state["push"])
+        for _ in range(60):
+            pool.step(pool.baseline("hold"))
+        left = np.linalg.norm(pool.poses(1)[tip][:3] - to)
+        self.assertLess(left, 0.01)  # half of the way at least: what brings the other joints back holds against it
+        twin = redman.Pool("hand_over_safe_finger", num_envs=2, options={"max_steps": 1000})
+        twin.reset()
+        for _ in range(80):
+            twin.step(twin.baseline("hold"))
+        self.assertEqual(pool.hash(0), twin.hash(0))  # the world beside it is as it would have been
+        page.until(lambda said: "numbers" in said and said["hand"] and said["last"] >= 80)
+        page.ask(do="release")
+        wait(lambda: window._state["lead"] is None and window._state["action"] is not None)
+        for _ in range(30):
+            pool.step(pool.baseline("hold"))
+        self.assertLess(np.linalg.norm(pool.poses(1)[tip][:3] - to), 0.01)  # the hand stays where it was led
+        ball = names.index("object")
+        page.ask(do="grab", world=0, shape=ball, local=[0, 0, 0], to=[0, 0, 1], newton=3, reach=0.5, leads=True)
+        wait(lambda: window._state["lead"] is not None)
+        with self.assertWarnsRegex(RuntimeWarning, "object: no entry of the action moves it"):
+            pool.step(pool.baseline("hold"))
+
+    def test_its_button_puts_actions_through_the_shield(self):
+        pools = [redman.Pool("hand_over_safe_joint", num_envs=2, autoreset="off", options={"action_repeat": 4}) for _ in range(2)]
+        for pool in pools:
+            pool.reset(seeds=3)
+        pool, other = pools
+        shields = [redman.Shield(p, options={"unproven": "least"}) for p in pools]
+        window = self.open(pool, shield=shields[0])
+        page = self.look(window)
+        page.until(lambda said: "numbers" in said)
+        self.assertTrue(page.scene["shields"])
+        page.ask(do="speed", times=100)
+        page.ask(do="shield", on=True)
+        wait(lambda: window._state["shield"])
+        stepped_in = 0
+        for _ in range(8):
+            pool.step(np.ones((2, pool.action_dim)))
+            other.step(shields[1].act(np.ones((2, pool.action_dim), np.float32)))
+            stepped_in += int(shields[1].intervened.sum())
+        self.assertEqual(pool.hash(), other.hash())
+        self.assertGreater(stepped_in, 0)
+        page.until(lambda said: "numbers" in said and said["shield"] and any(said["stepped_in"]))
+        page.ask(do="shield", on=False)
+        wait(lambda: not window._state["shield"])
+        before = shields[0].stats.decisions
+        pool.step(np.ones((2, pool.action_dim)))
+        self.assertEqual(shields[0].stats.decisions, before)
+        with self.assertRaisesRegex(redman.Error, "not a shield of this pool"):
+            redman.view(other, shield=shields[0])
+
     def test_a_hand_pulls_and_acts(self):
         pools = [redman.Pool(Ball) for _ in range(2)]
         for pool in pools:

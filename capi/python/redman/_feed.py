@@ -31,8 +31,9 @@ class Feed:
 
     def __init__(self, pool: Pool, first: int = 0, count: int = 1, *, actor: str = "python", seed: Optional[int] = None,
                  limits: Optional[Mapping[str, Optional[float]]] = None, own: Optional[Own] = None, shield: str = "",
-                 record: str = "") -> None:
+                 record: str = "", leads: bool = False, shields: bool = False) -> None:
         self.record = record  # the file that the page's button writes; "": it has none
+        self.leads, self.shields = leads, shields  # what else a page can ask for
         self.pool, self.worlds, self.actor, self.shield = pool, range(first, first + count), actor, shield
         self._seed = pool.seed if seed is None else seed
         self._own = own
@@ -56,7 +57,7 @@ class Feed:
                          "mounted": bool(camera.mount)} for name, camera in pool.task.cameras.items()],
             "costs": [{"name": name, "help": pool.costs[name].help if name in pool.costs else "a cost of your own",
                        "limit": -1 if limit is None else limit} for name, limit in self._limits.items()],
-            "actions": self._actions(), "record": self.record, **({"shield": self.shield} if self.shield else {})}
+            "actions": self._actions(), "record": self.record, "leads": self.leads, "shields": self.shields, **({"shield": self.shield} if self.shield else {})}
         return _message(head, np.array([pool.poses(i) for i in self.worlds]).reshape(-1))
 
     def _shape(self, index: int) -> dict[str, Any]:

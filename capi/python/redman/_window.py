@@ -15,11 +15,15 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Mapping, Optional, Sequence, Union
 
+import numpy as np
+
+from ._abi import ShieldKind
 from ._demonstrations import Demonstrations
 from ._discovery import TaskName, task_name
 from ._error import ArgumentError, Error, StateError, UnsupportedError, UsageError
 from ._feed import Feed, follow
 from ._files import MOST_JSON, read_bytes
+from ._lead import Lead
 from ._names import Hinted, keywords
 from ._options import Options
 from ._options import shown as option_text
@@ -27,7 +31,9 @@ from ._paths import is_file, named_options
 from ._play import singly
 from ._policy import Policy, policy_of
 from ._pool import Pool
+from ._rows import Array
 from ._run import Run
+from ._shield import Shield
 from ._tool import tool_path
 
 MOST_WORLDS = 64
@@ -44,6 +50,7 @@ class Page:
     port: int = 0
     paused: bool = False
     record: Optional[FilePath] = None
+    shield: Optional[Shield] = None  # of a pool
 
 
 class Window(Hinted):
@@ -66,7 +73,7 @@ class Window(Hinted):
         self._keep = keep  # files that it reads
         self._stop: list[Any] = []
         self._state: dict[str, Any] = {"windows": 0, "plays": True, "speed": 1.0, "steps": 0, "watched": 0, "contacts": False,
-                                       "push": None, "action": None, "record": False}
+                                       "push": None, "lead": None, "action": None, "record": False, "shield": False}
         self._changed = threading.Condition()
         self._process = subprocess.Popen(words, stdin=subprocess.PIPE if fed else subprocess.DEVNULL, stdout=subprocess.PIPE,
                                          stderr=subprocess.PIPE, start_new_session=True)
@@ -170,8 +177,11 @@ class PoolWindow(Window):
     def __init__(self, pool: Pool, env: int, count: int, actor: str, *, page: Page,
                  limits: Optional[Mapping[str, Optional[float]]] = None) -> None:
         self._pool, self._env, self._record = weakref.ref(pool), env, page.record
+        self._shield, self._stepped_in, self._decided = page.shield, np.zeros(pool.num_envs, bool), pool.action.copy()
+        self._lead: Optional[Lead] = None
+        self._led: Optional[Array] = None  # the action that leads
         self._feed: Any = Feed(weakref.proxy(pool), env, count, actor=actor, limits=limits,
-                               record="" if page.record is None else os.fspath(page.record))
+                               record="" if page.record is None else os.fspath(page.record), leads=True, shields=page.shield is not None)
         self._take: Optional[Demonstrations] = None
         self._scene_sent = self._refused = False
         self._used, self._due = 0, 0.0
@@ -185,7 +195,8 @@ class PoolWindow(Window):
         """Sends the worlds as they are now."""
         watched = self._env + int(self._state["watched"])
         data = b"" if self._scene_sent else self._feed.scene()
-        data += self._feed.frame(watched, contacts=self._state["contacts"], take=None if self._take is None else self._take.told())
+        data += self._feed.frame(watched, contacts=self._state["contacts"], take=None if self._take is None else self._take.told(),
+                                 stepped_in=self._stepped_in[self._feed.worlds.start:self._feed.worlds.stop])
         assert self._process.stdin is not None
         try:
             self._process.stdin.write(data)
@@ -203,6 +214,7 @@ class PoolWindow(Window):
             state = self._state
         self._switch_take()
         if not self._looked_at():
+            self._guard()
             self._record_step()
             return
         if state["plays"]:
@@ -219,8 +231,7 @@ class PoolWindow(Window):
         if pool is None:
             return
         state = self._state
-        if state["action"] is not None:
-            pool.action[self._env + state["watched"]] = state["action"]
+        self._act(pool, state)
         if state["push"] is not None:
             world, shape, *force = state["push"]
             try:
@@ -232,7 +243,38 @@ class PoolWindow(Window):
             else:
                 if self._take is not None and world == state["watched"]:
                     self._take.pulled = True
+        self._guard()
         self._record_step()
+
+    def _act(self, pool: Pool, state: Mapping[str, Any]) -> None:
+        """Replaces the action of the watched world by that of the page's sliders, or by the one that leads a point."""
+        if state["lead"] is None:
+            self._led = None
+            if state["action"] is not None:
+                pool.action[self._env + state["watched"]] = state["action"]
+            return
+        world, shape, *numbers = state["lead"]
+        env = self._env + world
+        if self._lead is None:
+            self._lead = Lead(pool)
+        start = pool.action[env] if self._led is None else self._led
+        led = self._lead.bring(env, shape, numbers[:3], numbers[3:], start)
+        if led is None and not self._refused:
+            warnings.warn(f"view: {pool.shapes[shape].name}: no entry of the action moves it; pull it instead", RuntimeWarning, stacklevel=5)
+            self._refused = True
+        self._led = start.copy() if led is None else led
+        pool.action[env] = self._led
+
+    def _guard(self) -> None:
+        """Puts the actions through the shield, where the page has it on: a decision of each world, held as long as those of the shield are."""
+        pool = self._pool()
+        self._stepped_in[:] = False
+        if pool is None or self._shield is None or not self._state["shield"]:
+            return
+        decides = pool.episode_step % self._shield.steps == 0
+        self._stepped_in[:] = self._shield.guard(decides) != ShieldKind.OWN
+        self._decided[decides] = pool.action[decides]
+        pool.action[:] = self._decided
 
     def _switch_take(self) -> None:
         """Begins or ends a recording, as the page says."""
@@ -314,10 +356,10 @@ def _worlds(pool: Pool, env: int, num_envs: Optional[int]) -> int:
 @keywords(aliases={"envs": "num_envs", "n_envs": "num_envs"}, options=True)
 def view(shown: Any, *, policy: Union[None, Policy, str, os.PathLike[str]] = None, num_envs: Optional[int] = None, env: int = 0, seed: int = 0,
          options: Optional[Options] = None, browser: bool = True, port: int = 0, paused: bool = False,
-         record: Optional[FilePath] = None) -> Window:
+         record: Optional[FilePath] = None, shield: Optional[Shield] = None) -> Window:
     """Opens a page in the browser on running worlds, and returns the Window, whose address it prints.
 
-        window = redman.view(pool)                    # follows pool.step(): look, pause, step, pull, act by hand
+        window = redman.view(pool)                    # follows pool.step(): look, pause, step, pull, lead, act by hand
         redman.view(policy)                           # or a run, a run folder, "grasp", "press.task", a redman.Task
         redman.train("grasp", view=True)              # the policy as it is after each epoch
 
@@ -328,10 +370,13 @@ def view(shown: Any, *, policy: Union[None, Policy, str, os.PathLike[str]] = Non
     policy: what acts in the task, "trained" for the bundled one. num_envs: worlds side by side, at most 64; of a pool, from env on.
     record: the .npz file that the page's button *record* writes: whole episodes of the watched world as somebody played them,
     which train(from_=...) takes. Without it worlds of the command write demonstration.npz, and a pool's page has no such button.
+    shield: of a pool, a redman.Shield of it: the page has a button that puts the program's actions, and those by hand, through it.
     browser: whether to open the browser of the desktop. The page is at 127.0.0.1 alone, behind a random address; see the manual,
     A window on running worlds.
     """
-    page = Page(browser, port, paused, record)
+    page = Page(browser, port, paused, record, shield)
+    if shield is not None and (not isinstance(shown, Pool) or shield.pool is not shown):
+        raise ArgumentError("shield: it is not a shield of this pool; worlds of the command redman have one of their own")
     if isinstance(shown, Pool):
         if policy is not None or options:
             raise UsageError("view: what acts in a pool, and its options, are those of the pool")

@@ -110,6 +110,8 @@ FeedScene::FeedScene(const FeedMessage& message) {
         {text_at(cost, "name", RDM_TEXT_SIZE), text_at(cost, "help"), number_at(cost, "limit", -1, 1e30)});
   actions = texts_at(head, "actions");
   record = text_at(head, "record");
+  leads = head.contains("leads") && flag_at(head, "leads");
+  shields = head.contains("shields") && flag_at(head, "shields");
   if (message.numbers.size() != worlds * looks.bodies.size() * 7)
     throw Failure("poses: they are not as many as the shapes of all worlds");
   poses = message.numbers;

@@ -2,8 +2,9 @@
 // --feed` makes a page of them, and `view --feed` shows them while they come.
 //
 // A message is u32 size of what follows, u32 size of a JSON text, the text, and float32 numbers, all little-endian.
-//   scene   JSON: members below, "record" the file of the page's button, "" without one; numbers: poses [worlds][shapes][7]
-//           of all shapes, position (m) and quaternion (x, y, z, w)
+//   scene   JSON: members below, "record" the file of the page's button, "" without one; "leads": it can lead a point;
+//           "shields": it has a shield to switch; numbers: poses [worlds][shapes][7] of all shapes, position (m) and
+//           quaternion (x, y, z, w)
 //   frame   JSON: "contacts" and "points", how many, and "world", the one that they are of; "take", while it records:
 //           episodes, dropped, steps, pushed. Numbers: poses [worlds][moving][7] of the shapes that are not fixed; rows
 //           [worlds][6 + 2 costs + actions]: reward, return, step, ended (1 by time, 2 terminated), success, stepped_in,
@@ -48,6 +49,7 @@ struct FeedScene {
   std::vector<uint8_t> mounted;  // of cameras
   std::vector<float> poses;      // [worlds][shapes][7]
   size_t worlds = 1;
+  bool leads = false, shields = false;
   std::string record;  // the file that the other program records into; "": it does not
   int32_t obs = 0, max_steps = 0;
 };

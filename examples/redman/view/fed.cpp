@@ -90,6 +90,7 @@ void Fed::take(FeedMessage&& message) {
     frames_.clear();
     grab_.reset();
     by_hand_ = records_ = false;
+    shield_ = shield_ && scene_->shields;
     own_.assign(scene_->actions.size(), 0);
     return;
   }
@@ -97,6 +98,7 @@ void Fed::take(FeedMessage&& message) {
   FeedFrame frame(*scene_, message);
   if (frames_.empty()) ++scene_number_;
   const bool newest = frames_.empty() || at_ == last();
+  if (leads()) own_ = frame.rows[static_cast<size_t>(watched_)].action;
   frames_.push_back(std::move(frame));
   steps_ += frames_.size() > 1;
   // the number of frames that fit is that of this one's size
@@ -109,7 +111,7 @@ void Fed::take(FeedMessage&& message) {
 
 // What a window holds is pulled from where the last frame has it.
 Json Fed::push() const {
-  if (!grab_ || frames_.empty()) return {};
+  if (!grab_ || leads() || frames_.empty()) return {};
   const Grab& g = *grab_;
   const auto found = std::find(scene_->moving.begin(), scene_->moving.end(), g.shape);
   const float* row = &frames_.back().poses[7 * (static_cast<size_t>(g.world) * scene_->moving.size() +
@@ -125,6 +127,12 @@ Json Fed::push() const {
 }
 
 void Fed::tell() {
+  Json lead;
+  if (leads()) {
+    lead = {grab_->world, grab_->shape};
+    for (const double* point : {grab_->local, grab_->to})
+      for (size_t k = 0; k < 3; ++k) lead.push_back(point[k]);
+  }
   const Json line = {{"windows", windows_},
                      {"plays", plays_},
                      {"speed", speed_},
@@ -133,7 +141,9 @@ void Fed::tell() {
                      {"contacts", contacts_},
                      {"record", records_},
                      {"push", push()},
-                     {"action", by_hand_ ? numbers_json(own_.data(), own_.size()) : Json()}};
+                     {"lead", lead},
+                     {"shield", shield_},
+                     {"action", by_hand_ && !leads() ? numbers_json(own_.data(), own_.size()) : Json()}};
   std::string text = json_text(line);
   if (text == said_) return;
   say_(text);
@@ -167,6 +177,7 @@ Json Fed::command(const Document& asked) {
   } else if (what == "watch") {
     watched_ = world();
     by_hand_ = false;
+    if (leads()) grab_.reset();
   } else if (what == "hand" || what == "action") {
     const std::vector<float>& action = frames_.back().rows[static_cast<size_t>(watched_)].action;
     if (!by_hand_) own_ = action;
@@ -187,11 +198,21 @@ Json Fed::command(const Document& asked) {
     }
     g.newton = number_at(asked, "newton", 0, 1e4);
     g.reach = number_at(asked, "reach", 1e-3, 1e6);
-    if (asked.contains("leads") && flag_at(asked, "leads"))
-      throw Usage("lead: these worlds run in another program; pull instead");
+    g.leads = asked.contains("leads") && flag_at(asked, "leads");
+    if (g.leads && !scene_->leads)
+      throw Usage("lead: these worlds run in another program, which does not lead; pull instead");
+    if (g.leads && g.world != watched_)
+      throw Usage("world " + std::to_string(g.world) + ": only the chosen world can be led by hand");
+    if (g.leads && !leads()) own_ = frames_.back().rows[static_cast<size_t>(watched_)].action;
+    by_hand_ = by_hand_ || g.leads;
     grab_ = g;
   } else if (what == "release") {
     grab_.reset();
+  } else if (what == "shield") {
+    if (!scene_->shields)
+      throw Usage(
+          "shield: these worlds run in another program, which gave none: redman.view(pool, shield=...)");
+    shield_ = on();
   } else if (what == "record") {
     if (scene_->record.empty())
       throw Usage("record: these worlds run in another program, which gave no file");
@@ -228,6 +249,8 @@ Json Fed::scene() const {
   return {{"say", "scene"},
           {"number", scene_number_},
           {"fed", true},
+          {"leads", scene_->leads},
+          {"shields", scene_->shields},
           {"task", looks.task},
           {"summary", looks.summary},
           {"dt", looks.control_dt},
@@ -284,7 +307,7 @@ std::string Fed::frame(int64_t since) const {
                       {"stops", false},
                       {"who", scene_->looks.actor},
                       {"hand", by_hand_},
-                      {"shield", !scene_->looks.shield.empty()},
+                      {"shield", shield_},
                       {"watched", watched_},
                       {"contacts", contacts},
                       {"points", points},

@@ -15,8 +15,9 @@ class Fed : public Viewed {
  public:
   // Reads messages from the file descriptor in a thread of its own. What windows do goes to `say` as lines of JSON, each
   // complete: {"windows": 1, "plays": true, "speed": 1, "steps": 0, "watched": 0, "contacts": false, "push": null,
-  // "action": null}. steps: how many single steps were asked for so far; push: [world, shape, x, y, z] N; action: of the
-  // watched world.
+  // "lead": null, "action": null, "shield": false}. steps: how many single steps were asked for so far; push: [world, shape,
+  // x, y, z] N; lead: [world, shape, a point of the shape, where it is to be] m; action: of the watched world; while a point is
+  // led, the other program finds it.
   using Say = void (*)(const std::string& line);
   Fed(int descriptor, Say say, size_t history_bytes, bool plays);
   ~Fed() override;
@@ -42,6 +43,7 @@ class Fed : public Viewed {
     int32_t world = 0, shape = 0;
     double local[3] = {}, to[3] = {};  // m, in the shape's frame, and in the world's
     double newton = 0, reach = 1;
+    bool leads = false;
     double force = 0;  // N, at the last frame
   };
   struct Inbox {  // that the reading thread fills; it may outlive this object while it waits for bytes
@@ -56,6 +58,7 @@ class Fed : public Viewed {
   int64_t last() const { return first_ + static_cast<int64_t>(frames_.size()) - 1; }
   void tell();
   Json push() const;
+  bool leads() const { return grab_ && grab_->leads; }
 
   Say say_;
   std::string said_;
@@ -65,7 +68,7 @@ class Fed : public Viewed {
   std::deque<FeedFrame> frames_;
   int64_t first_ = 0, at_ = 0, changes_ = 0, scene_number_ = 0, steps_ = 0, asked_ = 0;
   size_t windows_ = 0;
-  bool plays_ = true, contacts_ = false, by_hand_ = false, records_ = false;
+  bool plays_ = true, contacts_ = false, by_hand_ = false, records_ = false, shield_ = false;
   double speed_ = 1;
   int32_t watched_ = 0;
   std::vector<float> own_;

@@ -91,10 +91,12 @@ const redman = window.redman = {};
     costRows($('costs'), world.costs);
     $('curves').replaceChildren(...[null, ...world.costs].map(() => document.createElement('canvas')));
     hand.open(world.actions);
-    for (const id of ['again', 'picture', 'shield', 'actors', 'stops-box', 'options-card']) $(id).hidden = !!world.fed;
+    for (const id of ['again', 'picture', 'actors', 'stops-box', 'options-card']) $(id).hidden = !!world.fed;
+    $('shield').hidden = !!world.fed && !world.shields;
     $('take').hidden = !world.record;
-    $('mouse').querySelector('[value=lead]').disabled = !!world.fed;  // what an action does is tried in copies of worlds of this program
-    if (world.fed) $('mouse').value = 'pull';
+    const leads = !world.fed || world.leads;  // another program has to try what an action does
+    $('mouse').querySelector('[value=lead]').disabled = !leads;
+    if (!leads) $('mouse').value = 'pull';
     $('limit-box').hidden = !world.limit_range;
     if (world.limit_range) [$('limit').min, $('limit').max] = world.limit_range;
     options();
