@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import html
-import importlib
 import json
 import math
 import os
@@ -11,10 +10,11 @@ from typing import TYPE_CHECKING, Any, Dict, Iterable, Mapping, Optional, Sequen
 
 import numpy as np
 
-from ._error import FormatError, MissingFileError, UnsupportedError
+from ._error import FormatError, MissingFileError
 from ._html import image
 from ._files import MOST_JSON, MOST_TEXT, read_bytes
 from ._names import Hinted
+from ._optional import optional
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -80,11 +80,7 @@ class Curve(_Drawn, Hinted, Dict[str, Column]):
 
     def to_pandas(self) -> Any:
         """A pandas.DataFrame, a row for each epoch; needs pandas."""
-        try:
-            pandas = importlib.import_module("pandas")
-        except ImportError:
-            raise UnsupportedError("to_pandas: pandas is not installed (pip install pandas); dict(curve) has arrays by name") from None
-        return pandas.DataFrame(dict(self))
+        return optional("pandas", "to_pandas", "; dict(curve) has arrays by name").DataFrame(dict(self))
 
     def _repr_svg_(self) -> str:
         return draw([self])

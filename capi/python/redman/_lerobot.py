@@ -15,7 +15,6 @@
 """
 from __future__ import annotations
 
-import importlib
 import json
 import os
 import warnings
@@ -25,8 +24,9 @@ from typing import Any, Union
 import numpy as np
 import numpy.typing as npt
 
-from ._error import ArgumentError, FormatError, UnsupportedError
+from ._error import ArgumentError, FormatError
 from ._files import must_exist
+from ._optional import optional
 
 Arrays = dict[str, npt.NDArray[Any]]
 FilePath = Union[str, "os.PathLike[str]"]
@@ -40,10 +40,8 @@ _INDICES = ("timestamp", "frame_index", "episode_index", "index", "task_index", 
 
 
 def _pyarrow() -> tuple[Any, Any]:
-    try:
-        return importlib.import_module("pyarrow"), importlib.import_module("pyarrow.parquet")
-    except ImportError:
-        raise UnsupportedError("folders of LeRobot need the Python package pyarrow: pip install pyarrow") from None
+    what = "a folder of LeRobot"
+    return optional("pyarrow", what), optional("pyarrow.parquet", what)
 
 
 def _column(pa: Any, values: npt.NDArray[Any]) -> Any:

@@ -20,7 +20,6 @@ A callback for another library imports it when it is created.
 """
 from __future__ import annotations
 
-import importlib
 import inspect
 import math
 import os
@@ -29,7 +28,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Callable, Iterable, Mapping, Optional, Sequence, Union
 
 from . import _events
-from ._error import ArgumentError, UnsupportedError, UsageError
+from ._error import ArgumentError, UsageError
+from ._optional import optional
 
 if TYPE_CHECKING:
     from ._agent import Agent, Epoch
@@ -241,7 +241,7 @@ class WandB(Callback):
     wandb that is already active is used, and stays open."""
 
     def __init__(self, project: Optional[str] = None, **settings: Any) -> None:
-        self._wandb = _module("wandb", "pip install wandb")
+        self._wandb = _module("wandb")
         self._settings = {**({} if project is None else {"project": project}), **settings}
         self._own = False
 
@@ -263,7 +263,7 @@ class MLflow(Callback):
     is already active is used, and stays open."""
 
     def __init__(self, experiment: Optional[str] = None, **settings: Any) -> None:
-        self._mlflow = _module("mlflow", "pip install mlflow")
+        self._mlflow = _module("mlflow")
         self._experiment, self._settings, self._own = experiment, settings, False
 
     def on_begin(self, training: Training) -> None:
@@ -282,12 +282,8 @@ class MLflow(Callback):
             self._mlflow.end_run()
 
 
-def _module(name: str, install: str) -> Any:
-    try:
-        return importlib.import_module(name)
-    except ImportError as error:
-        raise UnsupportedError(f"callbacks: {name} is not installed ({install}); a run folder has its curve for TensorBoard "
-                               "without it") from error
+def _module(name: str) -> Any:
+    return optional(name, "this callback", "; a run folder has its curve for TensorBoard without it")
 
 
 def _finite(row: Mapping[str, float]) -> Iterable[tuple[str, float]]:

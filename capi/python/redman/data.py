@@ -16,15 +16,15 @@ import os
 import tempfile
 import zlib
 from pathlib import Path
-from types import ModuleType
 from typing import Any, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _lerobot
-from ._error import ArgumentError, FormatError, UnsupportedError
+from ._error import ArgumentError, FormatError
 from ._files import must_exist
+from ._optional import optional
 from ._tool import run_tool
 
 Arrays = dict[str, npt.NDArray[Any]]
@@ -37,12 +37,8 @@ _HASHED = ("obs", "action", "label", "reward", "cost", "terminated", "truncated"
 _KEPT = ("label", "cost", "success", "final_obs", "source", "layout_hash", "task")
 
 
-def _h5py() -> ModuleType:
-    import importlib
-    try:
-        return importlib.import_module("h5py")
-    except ImportError:
-        raise UnsupportedError("HDF5 files need the Python package h5py: pip install h5py, or apt-get install python3-h5py") from None
+def _h5py() -> Any:
+    return optional("h5py", "an HDF5 file", ", or apt-get install python3-h5py")
 
 
 def _kind(path: FilePath) -> str:

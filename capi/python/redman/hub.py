@@ -9,19 +9,18 @@ push and pull need the Python package huggingface_hub, and an account for push. 
 """
 from __future__ import annotations
 
-import importlib
 import json
 import os
 import shutil
 import tempfile
 from pathlib import Path
-from types import ModuleType
 from typing import Any, Mapping, Optional, Union
 
 from ._discovery import build, task
-from ._error import ArgumentError, FormatError, StateError, UnsupportedError
+from ._error import ArgumentError, FormatError, StateError
 from ._files import MOST_JSON, read_bytes, write_whole
 from ._html import number
+from ._optional import optional
 from ._play import Evaluation, evaluate
 from ._policy import Policy
 from ._run import Run
@@ -32,12 +31,8 @@ Shown = Union[Policy, Run, str, "os.PathLike[str]"]
 _SHARED = ("policy.rdm", "config.json", "progress.csv")
 
 
-def _client() -> ModuleType:
-    try:
-        return importlib.import_module("huggingface_hub")
-    except ImportError:
-        raise UnsupportedError("hub: push and pull need the Python package huggingface_hub: pip install huggingface_hub; hub.save "
-                               "writes the same files without it") from None
+def _client() -> Any:
+    return optional("huggingface_hub", "hub.push and hub.pull", "; hub.save writes the same files without it")
 
 
 def _shown(given: Shown) -> Union[Policy, Run]:
