@@ -24,6 +24,7 @@ class Feed {
   // go on for ever.
   double discounts() const { return discounts_; }
   double value_discounts() const { return value_discounts_; }
+  void forget_lengths() { length_ = discounts_ = value_discounts_ = 0; }
 
  private:
   void put_in_order(const LearnRows& rows);

@@ -11,6 +11,7 @@
 #include <iterator>
 
 #include "algos/off_policy/off_policy.hpp"
+#include "base/elementary.hpp"
 #include "base/error.hpp"
 #include "base/fpmode.hpp"
 
@@ -35,11 +36,16 @@ double OffPolicy::limit_in_values(int32_t i) const {
 double OffPolicy::sum_of_values(int32_t i) const {
   const ResolvedAgentConfig& r = resolved();
   const bool rate = r.column[i] == 0 && r.rate_steps > 0;
-  const double repeat = r.shared.action_repeat;
-  const double n = rate                        ? r.rate_steps / repeat
-                   : r.shared.discounted_limit ? feed_.discounts()
-                                               : feed_.length();
-  return n / feed_.value_discounts();
+  const double repeat = r.shared.action_repeat,
+               d = elementary::pow(r.shared.discount, r.shared.action_repeat);
+  double length = feed_.length(), discounts = feed_.discounts(), value_discounts = feed_.value_discounts();
+  if (length == 0) {
+    length = std::max(r.episode_steps / repeat, 1.0);
+    discounts = d < 1 ? (1 - elementary::pow(d, static_cast<int64_t>(length))) / (1 - d) : length;
+    value_discounts = d < 1 ? 1 / (1 - d) : length;
+  }
+  const double n = rate ? r.rate_steps / repeat : r.shared.discounted_limit ? discounts : length;
+  return n / value_discounts;
 }
 
 void OffPolicy::judge_starts(JudgedCosts& out) {

@@ -64,6 +64,7 @@ void OffPolicy::read_live() {
 
 // World after world, so that what stands behind a row is what it led to.
 void OffPolicy::take_horizon(const float* last_obs) {
+  feed_.forget_lengths();
   const Rollout& r = rollout();
   const size_t costs = count_of(r.num_costs);
   before_ = decisions_;
@@ -133,14 +134,18 @@ bool OffPolicy::advance(bool whole) {
     case Stage::kGradients:
       critics_.gradients(net_, to, row_, rows, share, first_ == 0);
       if (!last_group()) break;
+      see(rows, seen_);
+      add_to_critics(seen_, row_, rows);
       first_ += rows;
       stage_ = first_ < options_.batch_rows ? Stage::kNext : Stage::kCritics;
       break;
     case Stage::kCritics: {
       const SharedOptions& o = resolved().shared;
       const double rate = o.critic_learning_rate == 0 ? o.learning_rate : o.critic_learning_rate;
-      critics_.step(net_, to, rate, o.max_grad_norm > 0 ? o.max_grad_norm : kMostNorm, options_.tau);
+      const double norm = o.max_grad_norm > 0 ? o.max_grad_norm : kMostNorm;
+      critics_.step(net_, to, rate, norm, options_.tau);
       if (!last_group()) break;
+      end_critics_step(rate, norm);
       ++steps_;
       first_ = 0;
       stage_ = Stage::kOwn;
@@ -217,8 +222,8 @@ void OffPolicy::make_targets(int32_t rows) {
   for (int32_t i = 0; i < rows; ++i) {
     const int32_t at = drawn_[first_ + i];
     const float d = replay_.discount(at);
-    critics_.y(0)[i] =
-        replay_.reward(at) + d * (std::min(critics_.out(0)[i], critics_.out(1)[i]) + bonus_[i]);
+    const float value = std::min(critics_.out(0)[i], critics_.out(1)[i]) + bonus_[i];
+    critics_.y(0)[i] = replay_.reward(at) + d * (counts(i) ? value : std::min(value, 0.0f));
     for (int32_t pair = 1; pair < critics_.pairs(); ++pair) {
       const float next = std::max({critics_.out(2 * pair)[i], critics_.out(2 * pair + 1)[i], 0.0f});
       critics_.y(pair)[i] = replay_.cost(at)[pair - 1] + d * next;
@@ -244,9 +249,10 @@ void OffPolicy::weigh(int32_t rows) {
     const float *one = critics_.out(2 * pair), *other = critics_.out(2 * pair + 1);
     for (int32_t i = 0; i < rows; ++i) {
       const bool first = pair > 0 ? one[i] >= other[i] : !climbs_smaller() || one[i] <= other[i];
-      critics_.weight(2 * pair)[i] = first ? value : 0;
-      critics_.weight(2 * pair + 1)[i] = first ? 0 : value;
-      sums_.policy_loss += static_cast<double>(value) * static_cast<double>(first ? one[i] : other[i]);
+      const auto weight = static_cast<float>(weight_at(pair, i, value));
+      critics_.weight(2 * pair)[i] = first ? weight : 0;
+      critics_.weight(2 * pair + 1)[i] = first ? 0 : weight;
+      sums_.policy_loss += static_cast<double>(weight) * static_cast<double>(first ? one[i] : other[i]);
     }
   }
 }

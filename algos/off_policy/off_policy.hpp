@@ -97,6 +97,7 @@ class OffPolicy : public Agent {
   Replay& replay() { return replay_; }
   const Replay& replay() const { return replay_; }
   QCritics& critics() { return critics_; }
+  const QCritics& critics() const { return critics_; }
 
  protected:
   const PolicyLoss* policy_loss() const override { return nullptr; }
@@ -129,7 +130,18 @@ class OffPolicy : public Agent {
   virtual void end_actor_step() {}
   // Factor on what the critics say in the actor's loss, by their values of the policy's actions.
   virtual double critics_share(int32_t) { return 1; }
-  // Limit i as a value of a first observation, once there is a recording.
+  // Whether what the critics have just said of next actions counts for the reward's targets at row i of a part; if not,
+  // only what is below 0 does.
+  virtual bool counts(int32_t) const { return true; }
+  // The weight of a pair of critics at row i in the actor's loss; usual: that of every row.
+  virtual double weight_at(int32_t, int32_t, double usual) const { return usual; }
+  // What is added to the critics' gradients of a part; seen: what the actor sees of its rows, x: they as critics see them,
+  // with the actions that were taken.
+  virtual void add_to_critics(const float*, const float*, int32_t) {}
+  bool first_part() const { return first_ == 0; }
+  virtual void end_critics_step(double, double) {}  // learning rate, and bound of a gradient's norm
+  // Limit i as a value of a first observation: by the recording that is learned from, and in worlds by the length of an
+  // episode, with values that go on beyond it.
   double limit_in_values(int32_t i) const;
   virtual Mix mix() const { return Mix::kSum; }
 
@@ -137,10 +149,13 @@ class OffPolicy : public Agent {
   const MlpShape& actor_shape() const { return resolved().actor; }
   const MlpScratch& actor_scratch() const { return scratch_; }
   Stream& noise() { return *noise_; }
+  // Normalised observations of the rows at hand, [kPartRows][obs_dim].
+  const float* obs() const { return obs_; }
   // [kPartRows][outputs of the actor]: what it gives, and d(loss)/d(that).
   float* head() { return head_; }
   float* dhead() { return dhead_; }
   static constexpr size_t kRows = kPartRows;
+  static constexpr double kLeastScale = 1e-3;  // of a mean of values that a loss is divided by
   // Row i of the part that is learned from, as a row of the memory.
   int32_t drawn(int32_t i) const { return drawn_[first_ + i]; }
 

@@ -86,6 +86,15 @@ void QCritics::values(int32_t first, int32_t last, bool slow, const float* x, in
   });
 }
 
+// Behind mlp_forward of the same rows.
+void QCritics::add_gradient(int32_t net, const MlpScratch& s, const float* x, int32_t rows, const float* dq,
+                            bool begins) {
+  float *const total = grad_ + count_of(net) * step_, *const part = part_ + count_of(net) * step_;
+  mlp_backward(shape_, params(net), x, rows, s, dq, begins ? total : part);
+  const size_t size = begins ? 0 : adam_[net].size;
+  for (size_t i = 0; i < size; ++i) total[i] += part[i];
+}
+
 void QCritics::gradients(int32_t first, int32_t last, const float* x, int32_t rows, float scale,
                          bool begins) {
   spread(first, last, [&](int32_t net, const MlpScratch& s) {
@@ -101,10 +110,14 @@ void QCritics::gradients(int32_t first, int32_t last, const float* x, int32_t ro
     }
     loss_[net] = begins ? loss : loss_[net] + loss;
     sum_[net] = begins ? sum : sum_[net] + sum;
-    float *const total = grad_ + count_of(net) * step_, *const part = part_ + count_of(net) * step_;
-    mlp_backward(shape_, params(net), x, rows, s, dq, begins ? total : part);
-    const size_t size = begins ? 0 : adam_[net].size;
-    for (size_t i = 0; i < size; ++i) total[i] += part[i];
+    add_gradient(net, s, x, rows, dq, begins);
+  });
+}
+
+void QCritics::lift(int32_t first, int32_t last, const float* x, int32_t rows) {
+  spread(first, last, [&](int32_t net, const MlpScratch& s) {
+    mlp_forward(shape_, params(net), x, rows, s, out(net));
+    add_gradient(net, s, x, rows, weight(net), false);
   });
 }
 

@@ -52,6 +52,8 @@ class QCritics {
   void values(int32_t first, int32_t last, bool slow, const float* x, int32_t rows);
   // adds the gradient of scale (Q - y)^2 to the network's, or begins it; y(pair) [rows] are the targets.
   void gradients(int32_t first, int32_t last, const float* x, int32_t rows, float scale, bool begins);
+  // adds the gradient of the sum of weight_i Q(s_i, a_i), with weight(net) [rows].
+  void lift(int32_t first, int32_t last, const float* x, int32_t rows);
   // d(weight_i Q(s_i, a_i)) / d(a_i) to slopes(net) [rows][action_dim], of what `values` saw last; weight(net) [rows].
   void slopes(int32_t first, int32_t last, const float* x, int32_t rows);
   // A step of Adam along the gradients, and the slow copies follow by tau.
@@ -78,6 +80,8 @@ class QCritics {
  private:
   float* params(int32_t net) const { return params_ + static_cast<size_t>(net) * step_; }
   float* slow(int32_t net) const { return slow_ + static_cast<size_t>(net) * step_; }
+  void add_gradient(int32_t net, const MlpScratch& scratch, const float* x, int32_t rows, const float* dq,
+                    bool begins);
   template <class Body>
   void spread(int32_t first, int32_t last, Body&& body);
 

@@ -16,8 +16,6 @@
 namespace rdm {
 namespace {
 
-constexpr double kLeastScale = 1e-3;  // of N
-
 struct BcOptions {
   double bc_alpha;
 };

@@ -10,69 +10,12 @@
 namespace rdm::test {
 namespace {
 
-// Rows that were recorded, with episodes of several lengths.
-struct Recorded {
-  int32_t obs_dim, action_dim, cost_dim;
-  std::vector<float> obs, action, reward, cost;
-  std::vector<uint8_t> terminated, truncated;
-  std::vector<int64_t> episode;
-  Recorded(int32_t obs_dim, int32_t action_dim, int32_t cost_dim = 1)
-      : obs_dim(obs_dim), action_dim(action_dim), cost_dim(cost_dim) {}
-
-  LearnRows rows() const {
-    return {static_cast<int64_t>(reward.size()),
-            cost_dim,
-            obs.data(),
-            action.data(),
-            reward.data(),
-            cost.data(),
-            terminated.data(),
-            truncated.data(),
-            episode.data()};
-  }
-  void add(int64_t of_episode, Stream& stream, bool ends = false, bool by_time = false) {
-    for (int32_t j = 0; j < obs_dim; ++j) obs.push_back(static_cast<float>(stream.signed_unit()));
-    for (int32_t j = 0; j < action_dim; ++j) action.push_back(static_cast<float>(stream.signed_unit()));
-    for (int32_t j = 0; j < cost_dim; ++j) cost.push_back(static_cast<float>(stream.uniform()));
-    reward.push_back(static_cast<float>(stream.signed_unit()));
-    terminated.push_back(ends && !by_time);
-    truncated.push_back(ends && by_time);
-    episode.push_back(of_episode);
-  }
-};
-
-// Episodes of noise, every third one cut by time, every fifth one unfinished.
-Recorded noise(int32_t episodes, int32_t obs_dim, int32_t action_dim, int32_t cost_dim = 1,
-               uint64_t seed = 1) {
-  Recorded r(obs_dim, action_dim, cost_dim);
-  Stream stream(seed, 0, Purpose::kTest);
-  for (int32_t e = 0; e < episodes; ++e) {
-    const int32_t length = 1 + static_cast<int32_t>(stream.below(12));
-    for (int32_t t = 0; t < length; ++t) r.add(e, stream, t + 1 == length && e % 5 != 4, e % 3 == 2);
-  }
-  return r;
-}
-
-AgentSetup learner(const char* algo, const Recorded& r, const char* replay_rows, int32_t envs = 1) {
-  AgentSetup s(
-      algo, r.obs_dim, r.action_dim, envs,
-      {{"hidden", "8", 0}, {"replay_rows", replay_rows, 0}, {"batch_rows", "16", 0}, {"cost_limit", "1", 0}});
-  s.config.cost_dim = r.cost_dim;
-  s.config.max_steps = 12;
-  s.config.seed = 5;
-  return s;
-}
-
 // The algorithms that a recording can teach.
 std::vector<const char*> learners() {
   std::vector<const char*> names;
   for (int32_t i = 0; i < algo_count(); ++i)
     if (algo_row(i).off_policy) names.push_back(algo_at(i).name);
   return names;
-}
-
-const Replay& memory_of(Agent& a) {
-  return static_cast<OffPolicy&>(a).replay();
 }
 
 }  // namespace

@@ -1,0 +1,199 @@
+// CPQ: each step of all its networks against the same in double, and what its model of actions tells apart.
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+#include "offline_oracle.hpp"
+
+namespace rdm::test {
+namespace {
+
+constexpr size_t kBatch = 10, kObs = 3, kAction = 2, kLatent = 2 * kAction;
+constexpr double kRate = 1e-2, kTau = 0.2, kLiftRate = 3, kLiftMax = 4;
+
+Numbers numbers(const float* x, size_t n) {
+  return Numbers(x, x + n);
+}
+
+Numbers normals(Stream& stream, size_t n) {
+  std::vector<float> z(n);
+  stream.normals(z.data(), static_cast<int>(n));
+  return Numbers(z.begin(), z.end());
+}
+
+// tanh(m + std z) of the actor's head, z [kAction] from one at.
+Numbers sampled(const PlainNet& actor, const Numbers& obs, const Numbers& z, size_t at) {
+  const Numbers y = actor(obs);
+  Numbers a(kAction);
+  for (size_t j = 0; j < kAction; ++j) a[j] = std::tanh(y[j] + std::exp(y[kAction + j]) * z[at + j]);
+  return a;
+}
+
+double larger(const PlainNet& one, const PlainNet& other, const Numbers& x) {
+  return std::max(one(x)[0], other(x)[0]);
+}
+
+// The limit on an episode's sum as a value of its first decision, where costs are spread evenly: values go on for ever
+// where nothing terminated an episode.
+double as_value(double limit, const Recorded& r, double discount) {
+  double length = 0, values = 0;
+  for (size_t i = 0, n = 0; i < r.reward.size(); ++i) {
+    ++n;
+    if (i + 1 < r.reward.size() && r.episode[i + 1] == r.episode[i]) continue;
+    length += static_cast<double>(n);
+    values += (r.terminated[i] ? 1 - std::pow(discount, n) : 1) / (1 - discount);
+    n = 0;
+  }
+  return limit * values / length;
+}
+
+double kl_of(const Numbers& code) {
+  double sum = 0;
+  for (size_t j = 0; j < kLatent; ++j)
+    sum += 0.5 * (code[j] * code[j] + std::exp(2 * code[kLatent + j]) - 1 - 2 * code[kLatent + j]);
+  return sum / kLatent;
+}
+
+struct Branches {
+  int safe = 0, unsafe = 0, lifted = 0;
+};
+
+// Six steps, with rows and noise by the same streams.
+void compare(const char* cost_limit, Branches& branches) {
+  const Recorded r = noise(12, kObs, kAction);
+  AgentSetup s("cpq", kObs, kAction, 1,
+               {{"hidden", "5", 0},
+                {"activation", "tanh", 0},
+                {"replay_rows", "200", 0},
+                {"batch_rows", "10", 0},
+                {"learning_rate", "1e-2", 0},
+                {"tau", "0.2", 0},
+                {"discount", "0.9", 0},
+                {"outside", "0.5", 0},
+                {"lift_lr", "3", 0},
+                {"lift_max", "4", 0},
+                {"cost_limit", cost_limit, 0},
+                {"normalize_obs", "off", 0},
+                {"last_layer_scale", "1", 0}});
+  s.config.max_steps = 12;
+  const AgentPtr a = s.make();
+  a->learn(r.rows(), 0);
+  PlainNet actor = net_of(*a, "actor"), encoder = net_of(*a, "action_encoder"),
+           decoder = net_of(*a, "action_decoder"),
+           q[4] = {net_of(*a, "reward_q1"), net_of(*a, "reward_q2"), net_of(*a, "cost0_q1"),
+                   net_of(*a, "cost0_q2")};
+  PlainNet slow[4] = {q[0], q[1], q[2], q[3]};
+  PlainAdam actor_adam, encoder_adam, decoder_adam, adam[4];
+  double lift = 0;
+  const double limit = as_value(std::strtod(cost_limit, nullptr), r, 0.9);
+  const Replay& m = memory_of(*a);
+  Stream draws(s.config.seed, 1 << 20, Purpose::kMinibatch),
+      noise(s.config.seed, (1 << 20) + 1, Purpose::kMinibatch);
+  for (int step = 0; step < 6; ++step) {
+    int32_t rows[kBatch];
+    m.draw(draws, kBatch, rows);
+    Numbers obs[kBatch], taken[kBatch], both[kBatch];
+    for (size_t i = 0; i < kBatch; ++i) {
+      obs[i] = numbers(m.obs(rows[i]), kObs), taken[i] = numbers(m.action(rows[i]), kAction);
+      both[i] = joined(obs[i], taken[i]);
+    }
+    Numbers z = normals(noise, kBatch * kAction), target[2];
+    for (size_t i = 0; i < kBatch; ++i) {
+      const Numbers next = numbers(m.next_obs(rows[i]), kObs),
+                    x = joined(next, sampled(actor, next, z, i * kAction));
+      const auto d = static_cast<double>(m.discount(rows[i]));
+      const double cost = larger(slow[2], slow[3], x), value = std::min(slow[0](x)[0], slow[1](x)[0]);
+      target[0].push_back(static_cast<double>(m.reward(rows[i])) +
+                          d * (cost <= limit ? value : std::min(value, 0.0)));
+      target[1].push_back(static_cast<double>(m.cost(rows[i])[0]) + d * std::max(cost, 0.0));
+    }
+    // The model of actions.
+    z = normals(noise, kBatch * kLatent);
+    const auto model_loss = [&] {
+      double sum = 0;
+      for (size_t i = 0; i < kBatch; ++i) {
+        const Numbers code = encoder(both[i]);
+        Numbers latent(kLatent);
+        for (size_t j = 0; j < kLatent; ++j)
+          latent[j] = code[j] + std::exp(code[kLatent + j]) * z[i * kLatent + j];
+        const Numbers again = decoder(joined(obs[i], latent));
+        for (size_t j = 0; j < kAction; ++j)
+          sum += std::pow(std::tanh(again[j]) - taken[i][j], 2) / (kBatch * kAction);
+        sum += 0.5 * kl_of(code) / kBatch;
+      }
+      return sum;
+    };
+    const Numbers encoder_slope = differences(encoder.p, model_loss),
+                  decoder_slope = differences(decoder.p, model_loss);
+    // Actions of the policy that are outside.
+    Numbers inside;
+    for (const Numbers& x : both) inside.push_back(kl_of(encoder(x)));
+    std::sort(inside.begin(), inside.end());
+    z = normals(noise, kBatch * kAction);
+    std::vector<Numbers> outside;
+    for (size_t i = 0; i < kBatch; ++i) {
+      const Numbers x = joined(obs[i], sampled(actor, obs[i], z, i * kAction));
+      if (kl_of(encoder(x)) > inside[kBatch / 2]) outside.push_back(x);
+    }
+    double mean_outside = 0;
+    for (const Numbers& x : outside)
+      mean_outside += (q[2](x)[0] + q[3](x)[0]) / 2 / static_cast<double>(outside.size());
+    for (int net = 0; net < 4; ++net) {
+      const Numbers g = differences(q[net].p, [&] {
+        double sum = 0;
+        for (size_t i = 0; i < kBatch; ++i)
+          sum += std::pow(q[net](both[i])[0] - target[net / 2][i], 2) / kBatch;
+        if (net >= 2)
+          for (const Numbers& x : outside) sum -= lift * q[net](x)[0] / kBatch;
+        return sum;
+      });
+      adam[net].step(q[net].p, g, kRate);
+      for (size_t i = 0; i < g.size(); ++i) slow[net].p[i] += kTau * (q[net].p[i] - slow[net].p[i]);
+    }
+    encoder_adam.step(encoder.p, encoder_slope, kRate);
+    decoder_adam.step(decoder.p, decoder_slope, kRate);
+    branches.lifted += lift > 0 && !outside.empty();
+    if (!outside.empty()) lift = std::clamp(lift + kLiftRate * (limit - mean_outside), 0.0, kLiftMax);
+    // The policy.
+    z = normals(noise, kBatch * kAction);
+    const auto now_at = [&](size_t i) { return joined(obs[i], sampled(actor, obs[i], z, i * kAction)); };
+    bool safe[kBatch];
+    for (size_t i = 0; i < kBatch; ++i) safe[i] = larger(q[2], q[3], now_at(i)) <= limit;
+    for (const bool is : safe) ++(is ? branches.safe : branches.unsafe);
+    double scale = 0;
+    for (size_t i = 0; i < kBatch; ++i) scale += std::abs(q[0](now_at(i))[0]) / kBatch;
+    const Numbers g = differences(actor.p, [&] {
+      double sum = 0;
+      for (size_t i = 0; i < kBatch; ++i) {
+        const Numbers x = now_at(i);
+        sum -= safe[i] ? std::min(q[0](x)[0], q[1](x)[0]) / scale / kBatch
+                       : -std::max(q[2](x)[0], q[3](x)[0]) / limit / kBatch;
+      }
+      return sum;
+    });
+    actor_adam.step(actor.p, g, kRate);
+    a->learn(r.rows(), 1);
+    const std::pair<const char*, const PlainNet*> pairs[] = {
+        {"actor", &actor},   {"reward_q1", &q[0]},         {"reward_q2", &q[1]},        {"cost0_q1", &q[2]},
+        {"cost0_q2", &q[3]}, {"action_encoder", &encoder}, {"action_decoder", &decoder}};
+    for (const auto& [name, wanted] : pairs) {
+      const PlainNet now = net_of(*a, name);
+      ASSERT_EQ(now.p.size(), wanted->p.size());
+      for (size_t i = 0; i < now.p.size(); ++i)
+        EXPECT_NEAR(now.p[i], wanted->p[i], 3e-4) << name << ' ' << i << " step " << step;
+    }
+    ASSERT_FALSE(::testing::Test::HasFailure());
+  }
+}
+
+}  // namespace
+
+TEST(Cpq, StepsAreThoseInDouble) {
+  Branches taken;
+  for (const char* cost_limit : {"0.1", "0.3", "1"}) compare(cost_limit, taken);
+  EXPECT_GT(taken.safe, 10);
+  EXPECT_GT(taken.unsafe, 10);
+  EXPECT_GT(taken.lifted, 5);
+}
+
+}  // namespace rdm::test
