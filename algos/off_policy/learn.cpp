@@ -62,7 +62,7 @@ void OffPolicy::judge_starts(JudgedCosts& out) {
   see(rows, seen_);
   // A policy's samples here must not be those that a call cut in two would not draw.
   const Stream noise = *noise_;
-  own_actions(seen_, rows, action_);
+  judged_actions(seen_, rows, action_);
   *noise_ = noise;
   critics_.gather(obs_, action_, rows, row_);
   critics_.values(2, critics_.count(), false, row_, rows);

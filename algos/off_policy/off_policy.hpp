@@ -122,6 +122,10 @@ class OffPolicy : public Agent {
   // Of one part of a batch, `rows` rows of what the actor sees, normalised. The actions of the next rows that targets
   // are made of, and what is added to the next value of the reward.
   virtual void next_actions(const float* seen, int32_t rows, float* action, float* bonus) = 0;
+  // The actions whose costs limits are held against where no episode is seen.
+  virtual void judged_actions(const float* seen, int32_t rows, float* action) {
+    own_actions(seen, rows, action);
+  }
   // The policy's actions, and the gradient that follows from slope = d(loss)/d(action), which may be overwritten; share:
   // of the other terms of the loss, over the batch's rows.
   virtual void own_actions(const float* seen, int32_t rows, float* action) = 0;

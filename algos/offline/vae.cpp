@@ -56,6 +56,16 @@ void SideNet::visit(StateIo& io, double bound) {
   if (m) io.require(moments_agree(m, v, adam.size), "moments that no gradients can give");
 }
 
+bool SideNet::tensor(int32_t index, const char* prefix, char* name, TensorInfo* out) const {
+  if (index < 0 || index >= num_tensors()) return false;
+  const int32_t l = index / 2;
+  const bool weight = index % 2 == 0;
+  std::snprintf(name, kTensorNameSize, "%s.%d.%s", prefix, l, weight ? "weight" : "bias");
+  *out = {name, shape.layer_out(l), weight ? shape.layer_in(l) : 1,
+          params + (weight ? shape.weight_offset(l) : shape.bias_offset(l))};
+  return true;
+}
+
 void ActionVae::carve(Arena& arena, const ResolvedAgentConfig& resolved, int32_t row_inputs, int32_t rows) {
   row_inputs_ = row_inputs;
   action_dim_ = resolved.config.action_dim;
@@ -147,15 +157,9 @@ void ActionVae::distance(const float* x, int32_t rows, float* out) {
 }
 
 bool ActionVae::tensor(int32_t index, char* name, TensorInfo* out) const {
-  const int32_t of_half = 2 * encoder_.shape.num_layers(), l = index % of_half / 2;
-  if (index < 0 || index >= 2 * of_half) return false;
-  const SideNet& half = index < of_half ? encoder_ : decoder_;
-  const bool weight = index % 2 == 0;
-  std::snprintf(name, kTensorNameSize, "action_%s.%d.%s", index < of_half ? "encoder" : "decoder", l,
-                weight ? "weight" : "bias");
-  *out = {name, half.shape.layer_out(l), weight ? half.shape.layer_in(l) : 1,
-          half.params + (weight ? half.shape.weight_offset(l) : half.shape.bias_offset(l))};
-  return true;
+  const int32_t behind = index - encoder_.num_tensors();
+  return behind < 0 ? encoder_.tensor(index, "action_encoder", name, out)
+                    : decoder_.tensor(behind, "action_decoder", name, out);
 }
 
 void ActionVae::visit(StateIo& io, double bound) {

@@ -30,6 +30,9 @@ struct SideNet {
                 float* dx = nullptr);
   void step(double rate, double max_norm);
   void visit(StateIo& io, double bound);
+  int32_t num_tensors() const { return 2 * shape.num_layers(); }
+  // PREFIX.0.weight, PREFIX.0.bias, ...; name [kTensorNameSize].
+  bool tensor(int32_t index, const char* prefix, char* name, TensorInfo* out) const;
 };
 
 class ActionVae {
@@ -49,7 +52,7 @@ class ActionVae {
   void decode(const float* x, const float* z, int32_t rows, float* action);
   int32_t latent() const { return latent_; }
   int64_t skipped() const { return encoder_.skipped + decoder_.skipped; }
-  // action_encoder.0.weight, action_decoder.1.bias, ...; name [kTensorNameSize].
+  // Of action_encoder, then of action_decoder.
   static int32_t num_tensors(const ResolvedAgentConfig& resolved) {
     return 4 * resolved.reward_critic.num_layers();
   }

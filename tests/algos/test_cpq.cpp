@@ -11,26 +11,12 @@ namespace {
 constexpr size_t kBatch = 10, kObs = 3, kAction = 2, kLatent = 2 * kAction;
 constexpr double kRate = 1e-2, kTau = 0.2, kLiftRate = 3, kLiftMax = 4;
 
-Numbers numbers(const float* x, size_t n) {
-  return Numbers(x, x + n);
-}
-
-Numbers normals(Stream& stream, size_t n) {
-  std::vector<float> z(n);
-  stream.normals(z.data(), static_cast<int>(n));
-  return Numbers(z.begin(), z.end());
-}
-
 // tanh(m + std z) of the actor's head, z [kAction] from one at.
 Numbers sampled(const PlainNet& actor, const Numbers& obs, const Numbers& z, size_t at) {
   const Numbers y = actor(obs);
   Numbers a(kAction);
   for (size_t j = 0; j < kAction; ++j) a[j] = std::tanh(y[j] + std::exp(y[kAction + j]) * z[at + j]);
   return a;
-}
-
-double larger(const PlainNet& one, const PlainNet& other, const Numbers& x) {
-  return std::max(one(x)[0], other(x)[0]);
 }
 
 // The limit on an episode's sum as a value of its first decision, where costs are spread evenly: values go on for ever
@@ -45,13 +31,6 @@ double as_value(double limit, const Recorded& r, double discount) {
     n = 0;
   }
   return limit * values / length;
-}
-
-double kl_of(const Numbers& code) {
-  double sum = 0;
-  for (size_t j = 0; j < kLatent; ++j)
-    sum += 0.5 * (code[j] * code[j] + std::exp(2 * code[kLatent + j]) - 1 - 2 * code[kLatent + j]);
-  return sum / kLatent;
 }
 
 struct Branches {
@@ -92,7 +71,7 @@ void compare(const char* cost_limit, Branches& branches) {
   for (int step = 0; step < 6; ++step) {
     int32_t rows[kBatch];
     m.draw(draws, kBatch, rows);
-    Numbers obs[kBatch], taken[kBatch], both[kBatch];
+    std::vector<Numbers> obs(kBatch), taken(kBatch), both(kBatch);
     for (size_t i = 0; i < kBatch; ++i) {
       obs[i] = numbers(m.obs(rows[i]), kObs), taken[i] = numbers(m.action(rows[i]), kAction);
       both[i] = joined(obs[i], taken[i]);
@@ -109,20 +88,7 @@ void compare(const char* cost_limit, Branches& branches) {
     }
     // The model of actions.
     z = normals(noise, kBatch * kLatent);
-    const auto model_loss = [&] {
-      double sum = 0;
-      for (size_t i = 0; i < kBatch; ++i) {
-        const Numbers code = encoder(both[i]);
-        Numbers latent(kLatent);
-        for (size_t j = 0; j < kLatent; ++j)
-          latent[j] = code[j] + std::exp(code[kLatent + j]) * z[i * kLatent + j];
-        const Numbers again = decoder(joined(obs[i], latent));
-        for (size_t j = 0; j < kAction; ++j)
-          sum += std::pow(std::tanh(again[j]) - taken[i][j], 2) / (kBatch * kAction);
-        sum += 0.5 * kl_of(code) / kBatch;
-      }
-      return sum;
-    };
+    const auto model_loss = [&] { return model_loss_of(encoder, decoder, obs, taken, z); };
     const Numbers encoder_slope = differences(encoder.p, model_loss),
                   decoder_slope = differences(decoder.p, model_loss);
     // Actions of the policy that are outside.

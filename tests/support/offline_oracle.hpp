@@ -81,6 +81,48 @@ inline PlainNet net_of(Agent& a, const std::string& prefix) {
   return net;
 }
 
+inline Numbers numbers(const float* x, size_t n) {
+  return Numbers(x, x + n);
+}
+
+inline Numbers normals(Stream& stream, size_t n) {
+  std::vector<float> z(n);
+  stream.normals(z.data(), static_cast<int>(n));
+  return Numbers(z.begin(), z.end());
+}
+
+// What a pair of critics says of a cost.
+inline double larger(const PlainNet& one, const PlainNet& other, const Numbers& x) {
+  return std::max(one(x)[0], other(x)[0]);
+}
+
+// KL of a latent vector, means and then log deviations, to N(0, 1), over its entries.
+inline double kl_of(const Numbers& code) {
+  const size_t n = code.size() / 2;
+  double sum = 0;
+  for (size_t j = 0; j < n; ++j)
+    sum += 0.5 * (code[j] * code[j] + std::exp(2 * code[n + j]) - 1 - 2 * code[n + j]);
+  return sum / static_cast<double>(n);
+}
+
+// Loss of a model of actions over rows, with noise z.
+inline double model_loss_of(const PlainNet& encoder, const PlainNet& decoder, const std::vector<Numbers>& obs,
+                            const std::vector<Numbers>& taken, const Numbers& z) {
+  double sum = 0;
+  const auto rows = static_cast<double>(obs.size());
+  for (size_t i = 0; i < obs.size(); ++i) {
+    const Numbers code = encoder(joined(obs[i], taken[i]));
+    const size_t n = code.size() / 2;
+    Numbers latent(n);
+    for (size_t j = 0; j < n; ++j) latent[j] = code[j] + std::exp(code[n + j]) * z[i * n + j];
+    const Numbers again = decoder(joined(obs[i], latent));
+    for (size_t j = 0; j < again.size(); ++j)
+      sum += std::pow(std::tanh(again[j]) - taken[i][j], 2) / (rows * static_cast<double>(again.size()));
+    sum += 0.5 * kl_of(code) / rows;
+  }
+  return sum;
+}
+
 // Rows that were recorded, with episodes of several lengths.
 struct Recorded {
   int32_t obs_dim, action_dim, cost_dim;

@@ -24,7 +24,7 @@ for command in 'train --task' 'eval --task' 'rollout --task' 'render --task' 'pl
   refused 2 "$hands" $command hand_ovr
 done
 refused 2 'nearest is pick_bottles' train --task bottles
-refused 2 'nearest are ppo_lag, trpo_lag, mappo_lag and 4 more' train --algo lag
+refused 2 'nearest are ppo_lag, trpo_lag, mappo_lag and 5 more' train --algo lag
 refused 2 'nearest is trpo' algos trop
 refused 2 'nearest is shadow_hand' rollout --task grasp --set hand=shadow_hnd
 refused 2 'nearest is kuka_iiwa7' rollout --task grasp --set arm=kuka_iiwa
