@@ -162,4 +162,28 @@ TEST(Cpq, StepsAreThoseInDouble) {
   EXPECT_GT(taken.lifted, 5);
 }
 
+// Actions near 0.5 are recorded: those near -0.5 are far from N(0, 1), recorded ones are not.
+TEST(Cpq, ItsModelTellsOtherActionsApart) {
+  Recorded r = noise(60, kObs, kAction);
+  for (float& v : r.action) v = 0.5f + 0.1f * v;
+  AgentSetup s("cpq", kObs, kAction, 1,
+               {{"hidden", "16", 0},
+                {"activation", "tanh", 0},
+                {"replay_rows", "600", 0},
+                {"batch_rows", "32", 0},
+                {"learning_rate", "3e-3", 0},
+                {"normalize_obs", "off", 0}});
+  s.config.max_steps = 12;
+  const AgentPtr a = s.make();
+  a->learn(r.rows(), 1500);
+  const PlainNet encoder = net_of(*a, "action_encoder");
+  double recorded = 0, other = 0;
+  for (size_t i = 0; i < r.reward.size(); ++i) {
+    const Numbers obs = numbers(r.obs.data() + i * kObs, kObs);
+    recorded += kl_of(encoder(joined(obs, numbers(r.action.data() + i * kAction, kAction))));
+    other += kl_of(encoder(joined(obs, {-0.5, -0.5})));
+  }
+  EXPECT_GT(other, 3 * recorded);
+}
+
 }  // namespace rdm::test
