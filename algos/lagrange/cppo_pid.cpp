@@ -14,7 +14,7 @@ PidRule::PidRule(const ResolvedAgentConfig& resolved) : count_(resolved.num_limi
 void PidRule::read_live(const Options& o) {
   options_ = kPidRows.read(o);
   // Weights of a difference share 1.
-  if (options_.mix == Mix::kDifference) options_.integral_max = options_.max = 1.0 / count_;
+  if (options_.mix == Mix::kDifference) options_.max = 1.0 / count_;
 }
 
 void PidRule::step(const JudgedCosts& costs, int32_t) {

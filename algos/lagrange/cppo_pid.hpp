@@ -27,8 +27,8 @@ inline constexpr auto kPidRows = option_rows<PidRuleOptions>(
     row<&PidOptions::delay>(integer_option("pid_delay", 10, 1, kMaxPidDelay,
                                            "number of epochs over which the derivative is taken")),
     row<&PidOptions::init>(number_option("pid_init", 0.001, 0, 1e6, "initial value of the integral")),
-    row<&PidOptions::max>(
-        number_option("pid_max", 1e6, 0, kMaxMultiplier, "upper bound of the multiplier", true)),
+    row<&PidOptions::max>(number_option("pid_max", 1e6, 0, kMaxMultiplier,
+                                        "upper bound of the multiplier and of its integral", true)),
     row<&PidRuleOptions::mix, Mix::kSum, Mix::kDifference, Mix::kPlain>(text_option(
         "pid_norm", "sum", "sum|diff|none",
         "advantage: sum: (A_r - l A_c)/(1 + l); diff: (1 - l) A_r - l A_c with l <= 1; none: A_r - l A_c")));

@@ -8,12 +8,12 @@ namespace rdm {
 
 void Pid::reset(const PidOptions& options) {
   *this = Pid();
-  integral_ = std::min(options.init, options.integral_max);
+  integral_ = std::min(options.init, options.max);
 }
 
 void Pid::step(const PidOptions& o, double cost, double limit) {
   const double e = cost - limit;
-  integral_ = std::clamp(integral_ + o.ki * e, 0.0, o.integral_max);
+  integral_ = std::clamp(integral_ + o.ki * e, 0.0, o.max);
   p_ = o.smooth_p * p_ + (1 - o.smooth_p) * e;
   cost_ = o.smooth_d * cost_ + (1 - o.smooth_d) * cost;
   double& oldest = past_[steps_];

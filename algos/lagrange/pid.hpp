@@ -22,12 +22,12 @@ struct PidOptions {
   double smooth_p = 0.95, smooth_d = 0.95;  // EMA factors; 0: none
   int32_t delay = 10;                       // epochs that the derivative looks back
   double init = 0.001;                      // of the integral
-  double integral_max = 1e300, max = 1e300;
+  double max = 1e300;                       // of the integral, and of the multiplier
 };
 
-// With e = J_c - limit: integral I = clip(I + ki e, 0, integral_max), P an EMA of e, C an EMA of J_c from 0,
+// With e = J_c - limit: integral I = clip(I + ki e, 0, max), P an EMA of e, C an EMA of J_c from 0,
 // D = max(0, C - C of `delay` steps ago (0 before)); multiplier = clip(kp P + I + kd D, 0, max). So only a
-// rising cost is derived, and the integral never winds up below 0.
+// rising cost is derived, and the integral winds up neither below 0 nor beyond what the multiplier can be.
 class Pid {
  public:
   void reset(const PidOptions& options);

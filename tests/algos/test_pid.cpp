@@ -49,8 +49,8 @@ TEST(Pid, EachPartAlone) {
 
 TEST(Pid, Bounds) {
   PidOptions o;
+  o.kp = o.kd = 0;
   o.ki = 1;
-  o.integral_max = 1;
   o.max = 1;
-  expect_run(o, {100, 100}, 25, {1, 1});
+  expect_run(o, {100, 100, 24.5}, 25, {1, 1, 0.5});  // comes down at once: the integral did not go beyond
 }
