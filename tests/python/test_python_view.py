@@ -130,6 +130,7 @@ class OfAPool(unittest.TestCase):
         pool = redman.Pool("hand_over_safe_finger", num_envs=2, options={"modality": "points", "points": 64})
         pool.reset()
         page = self.look(self.open(pool))
+        page.until(lambda said: "numbers" in said)
         for world in (0, 1):
             page.ask(do="watch", world=world)
             wait(lambda: pool._followers.all[0][0].__self__._state["watched"] == world)
@@ -147,6 +148,7 @@ class OfAPool(unittest.TestCase):
         pool.reset()
         window = self.open(pool, env=1, record=path)
         page = self.look(window)
+        page.until(lambda said: "numbers" in said)
         page.ask(do="speed", times=100)
         page.ask(do="action", entry=0, value=0.5)
         pool.step(pool.baseline("zero"))
@@ -179,6 +181,7 @@ class OfAPool(unittest.TestCase):
         pool = redman.Pool("ball_run")
         pool.reset()
         page = self.look(self.open(pool))
+        page.until(lambda said: "numbers" in said)
         self.assertIn("which gave no file", page.ask(do="record", on=True)["error"])
 
     def test_a_paused_page_holds_the_loop_and_steps_it(self):
