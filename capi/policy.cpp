@@ -68,6 +68,9 @@ struct PolicyTensor {
   const int16_t* millimetres = nullptr;    // in the place of data: points of the example
   const unsigned char* numbers = nullptr;  // in the place of data: their classes, colours
   bool history = false;                    // in the place of data: the entries of a row that a history keeps
+  const int32_t* reads =
+      nullptr;       // [seen] with a latent, of a first layer: the entries, with the history, that `data` has
+  int32_t seen = 0;  // columns of; those behind them are z
   int32_t of_gru = -1;  // of the GRUs of groups: which of their tensors, as memory_tensor_at counts them
 };
 
@@ -128,6 +131,25 @@ void copy_group_memories(const PolicyView& v, const PolicyTensor& t, float* out)
   }
 }
 
+// The first layer of a network of a latent, with a column for each entry of the row, then those of the history, or of z.
+void copy_first_layer(const PolicyView& v, const PolicyTensor& t, float* out) {
+  const auto rows = static_cast<size_t>(t.rows), cols = static_cast<size_t>(t.cols),
+             seen = static_cast<size_t>(t.seen), dim = static_cast<size_t>(v.obs_dim());
+  const size_t behind = v.latent.own == t.reads ? static_cast<size_t>(v.latent.mlp.out) : 0;
+  std::fill_n(out, rows * cols, 0.0f);
+  for (size_t r = 0; r < rows; ++r) {
+    const float* from = t.data + r * (seen + behind);
+    for (size_t i = 0; i < seen; ++i) {
+      const int32_t entry = t.reads[i];
+      const int32_t at = entry >= v.entries() ? v.obs_dim() + entry - v.entries()
+                         : v.columns          ? v.columns[entry]
+                                              : entry;
+      out[r * cols + static_cast<size_t>(at)] = from[i];
+    }
+    std::copy_n(from + seen, behind, out + r * cols + dim);
+  }
+}
+
 // All that the tensor is, [rows][cols].
 void copy_tensor(const PolicyView& v, const PolicyTensor& t, float* out) {
   const size_t size = static_cast<size_t>(t.rows) * static_cast<size_t>(t.cols);
@@ -141,6 +163,7 @@ void copy_tensor(const PolicyView& v, const PolicyTensor& t, float* out) {
   if (t.millimetres || t.numbers || t.history) return;
   if (t.layer >= 0) return copy_groups(v, t, out);
   if (t.of_gru >= 0) return copy_group_memories(v, t, out);
+  if (t.reads) return copy_first_layer(v, t, out);
   if (!t.part) {
     std::copy(t.data, t.data + size, out);
     return;
@@ -188,6 +211,25 @@ bool eyes_tensor_at(const PolicyView& v, int32_t i, PolicyTensor* out) {
   const int32_t at = i - 2 * s.num_layers();
   if (at >= 4 + (eyes.classes ? 1 : 0) + (eyes.color ? 1 : 0)) return false;
   *out = rest[at];
+  return true;
+}
+
+// The tensors of a latent's encoder.
+bool latent_tensor_at(const PolicyView& v, int32_t i, PolicyTensor* out) {
+  static constexpr const char* kWeights[] = {"latent.0.weight", "latent.1.weight", "latent.2.weight",
+                                             "latent.3.weight", "latent.4.weight"};
+  static constexpr const char* kBiases[] = {"latent.0.bias", "latent.1.bias", "latent.2.bias",
+                                            "latent.3.bias", "latent.4.bias"};
+  static_assert(std::size(kWeights) == kMaxHidden + 1 && std::size(kBiases) == kMaxHidden + 1);
+  const MlpShape& s = v.latent.mlp;
+  const int32_t l = i / 2;
+  if (i % 2) {
+    *out = {kBiases[l], v.latent_params + s.bias_offset(l), s.layer_out(l), 1};
+    return true;
+  }
+  *out = {kWeights[l], v.latent_params + s.weight_offset(l), s.layer_out(l),
+          l == 0 ? v.obs_dim() + v.history_inputs() : s.layer_in(l)};
+  if (l == 0) out->reads = v.latent.columns, out->seen = s.in;
   return true;
 }
 
@@ -245,6 +287,9 @@ bool tensor_at(const PolicyView& v, int32_t i, PolicyTensor* out) {
         *out = {kBiases[l], at + head.bias_offset(0), head.out, 1};
       else
         *out = {kWeights[l], at, head.out, head.in};
+    } else if (i % 2 == 0 && l == 0 && v.latent) {
+      *out = {kWeights[l], v.params, s.layer_out(l), v.obs_dim() + v.latent.mlp.out};
+      out->reads = v.latent.own, out->seen = v.latent.num_own;
     } else if (i % 2)
       *out = {kBiases[l], v.params + s.bias_offset(l), s.layer_out(l), 1};
     else
@@ -272,9 +317,13 @@ bool tensor_at(const PolicyView& v, int32_t i, PolicyTensor* out) {
     *out = normalizer[rest - std::size(always)];
   else if (v.squash != Squash::kNone)
     return false;
-  else
-    return v.state_dim() ? memory_tensor_at(v, static_cast<int32_t>(rest - known), out)
-                         : eyes_tensor_at(v, static_cast<int32_t>(rest - known), out);
+  else {
+    auto at = static_cast<int32_t>(rest - known);
+    const int32_t latent = v.latent ? 2 * v.latent.mlp.num_layers() : 0;
+    if (at < latent) return latent_tensor_at(v, at, out);
+    at -= latent;
+    return v.state_dim() ? memory_tensor_at(v, at, out) : eyes_tensor_at(v, at, out);
+  }
   return true;
 }
 

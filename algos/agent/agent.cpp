@@ -37,7 +37,8 @@ size_t Agent::memory(const AgentConfig& config) {
   size_t held =
       resolved.options.held_bytes() +
       (resolved.actor_columns.capacity() + resolved.critic_columns.capacity() +
-       resolved.history_columns.capacity()) *
+       resolved.history_columns.capacity() + resolved.own_columns.capacity() +
+       resolved.latent_columns.capacity() + resolved.teacher_columns.capacity()) *
           sizeof(int32_t) +
       (resolved.groups.capacity() + resolved.reward_critics.capacity() + resolved.cost_critics.capacity()) *
           sizeof(ActorGroup);
@@ -76,6 +77,9 @@ void Agent::carve(Arena& arena) {
   history_entries_ = nullptr;
   if (!resolved_.history_columns.empty())
     history_entries_ = arena.make<int32_t>(resolved_.history_columns.size());
+  const LatentShape& latent = resolved_.latent;
+  latent_entries_ = arena.make<int32_t>(latent ? static_cast<size_t>(latent.mlp.in) : 0);
+  own_entries_ = arena.make<int32_t>(static_cast<size_t>(latent.num_own));
   fields_ = keep_fields(arena, resolved_.config.fields, resolved_.config.num_fields);
   shuffle_ = arena.make<Stream>(static_cast<size_t>(resolved_.blocks));
   spread_ = arena.make<double>(resolved_.state_std() ? 2 * static_cast<size_t>(resolved_.blocks) : 0);
@@ -101,6 +105,7 @@ void Agent::open(const AgentConfig& config) {
     shuffle_[b] =
         Stream(config.seed, static_cast<uint32_t>(workers_.ranks().first_block() + b), Purpose::kMinibatch);
   find_history_entries();
+  find_latent_entries();
   init_networks(nets_, resolved_);
   restart_average(nets_);
   opened();
@@ -126,6 +131,21 @@ void Agent::find_history_entries() {
     const int32_t* at = columns ? std::lower_bound(columns, columns + nets_.row_entries(), kept[i]) : nullptr;
     history_entries_[i] = columns ? static_cast<int32_t>(at - columns) : kept[i];
   }
+}
+
+// Likewise of a latent; the history stands behind the row.
+void Agent::find_latent_entries() {
+  const LatentShape& l = resolved_.latent;
+  if (!l) return;
+  const int32_t* columns = nets_.columns[Networks::kActor];
+  const int32_t count = l.entries + resolved_.history_inputs();
+  const auto find = [&](const int32_t* from, int32_t n, int32_t* to) {
+    for (int32_t i = 0; i < n; ++i)
+      to[i] = columns ? static_cast<int32_t>(std::lower_bound(columns, columns + count, from[i]) - columns)
+                      : from[i];
+  };
+  find(l.columns, l.mlp.in, latent_entries_);
+  find(l.own, l.num_own, own_entries_);
 }
 
 void Agent::read_live() {
@@ -258,6 +278,8 @@ CloneReport Agent::clone(const DemoRows& demo, const CloneOptions& how) {
   const HostScope scope(resolved_.config.hooks);
   need_idle("clone");
   need_on_policy("clone");
+  if (resolved_.adapts())
+    fail(Code::kUnsupported, "clone: with latent_from=history the policy stays as it is");
   need_clouds(demo);
   check_cancel();
   DemoRows rows = demo;
@@ -322,7 +344,7 @@ void Agent::set_recording(const DemoRows& demo, uint64_t mark) {
   imitation_.set(demo, mark, resolved_.config.hooks);
 }
 
-void Agent::need_same_shape(const PolicyView& p) const {
+void Agent::need_same_shape(const PolicyView& p, bool own) const {
   const AgentConfig& c = resolved_.config;
   const MlpShape& actor = nets_.shape[Networks::kActor];
   const auto differ = [](const char* what) {
@@ -347,6 +369,10 @@ void Agent::need_same_shape(const PolicyView& p) const {
   for (int32_t i = 0; i < p.num_groups; ++i)
     if (!same_group(p.group[i], nets_.group[i])) differ("groups");
   if (p.gru.units != nets_.gru.units) differ("memory");
+  if ((p.clip > 0) != collector_.normalizes() || (p.clip > 0 && p.clip != collector_.normalizer().clip))
+    differ("normalize_obs, or obs_clip,");
+  if (p.latent || nets_.latent) need_same_latent(p, own);
+  if (nets_.adapts() && !own) return;
   const int32_t history = resolved_.history_width;
   const auto listed = [](const int32_t* entry, int32_t i) { return entry ? entry[i] : i; };
   if (p.history != resolved_.history) differ("history");
@@ -354,24 +380,54 @@ void Agent::need_same_shape(const PolicyView& p) const {
   for (int32_t i = 0; i < history; ++i)
     if (listed(p.history_entries, i) != listed(history_entries_, i)) differ("history_fields");
   const int32_t entries = nets_.row_entries();
-  if (p.actor.in != actor.in || (p.columns != nullptr) != (columns != nullptr) ||
+  if (p.actor.in != actor.in || p.entries() != entries || (p.columns != nullptr) != (columns != nullptr) ||
       (columns && !std::equal(columns, columns + entries, p.columns)))
     differ("actor_obs");
-  if ((p.clip > 0) != collector_.normalizes() || (p.clip > 0 && p.clip != collector_.normalizer().clip))
-    differ("normalize_obs, or obs_clip,");
+}
+
+// A student begins with its teacher: the network, what made the latent, and the statistics.
+void Agent::need_same_latent(const PolicyView& p, bool own) const {
+  const auto differ = [](const char* what) {
+    fail(Code::kArgument, "policy: %s differs from the agent's", what);
+  };
+  const LatentShape& l = nets_.latent;
+  const bool of_teacher = nets_.adapts() && !own;
+  if (p.latent.mlp.out != l.mlp.out) differ("latent");
+  if (of_teacher && p.history > 1)
+    fail(Code::kArgument, "policy: it is a student's; give the teacher that it had");
+  const MlpShape& encoder = of_teacher ? nets_.teacher : l.mlp;
+  if (p.latent.mlp.num_hidden != encoder.num_hidden ||
+      !std::equal(encoder.hidden, encoder.hidden + encoder.num_hidden, p.latent.mlp.hidden))
+    differ("latent_hidden");
+  // in columns of the stacked row
+  const auto same = [&](const int32_t* entries, int32_t count, const int32_t* wanted, int32_t wanted_count) {
+    for (int32_t i = 0; count == wanted_count && i < count; ++i) {
+      const int32_t entry = entries[i], behind = entry - p.entries();
+      const int32_t at = behind >= 0 ? p.obs_dim() + behind : p.columns ? p.columns[entry] : entry;
+      if (at != wanted[i]) return false;
+    }
+    return count == wanted_count;
+  };
+  if (!same(p.latent.columns, p.latent.mlp.in, of_teacher ? nets_.teacher_columns : l.columns, encoder.in))
+    differ(nets_.adapts() && own ? "history" : "latent_fields");
+  if (!same(p.latent.own, p.latent.num_own, l.own, l.num_own)) differ("actor_obs");
 }
 
 void Agent::load_policy(const PolicyView& p, double samples) {
   const FpMode mode;
   need_idle("load_policy");
   if (!(samples >= 2 && samples <= 1e12)) fail(Code::kRange, "samples: %g is outside [2, 1e12]", samples);
-  need_same_shape(p);
-  const int32_t* columns = nets_.columns[Networks::kActor];
+  need_same_shape(p, false);
+  // A student's teacher has statistics of what the student does not observe.
+  const int32_t* columns = nets_.adapts() ? p.columns : nets_.columns[Networks::kActor];
   const PointNetShape& eyes = nets_.eyes;
-  const int32_t entries = nets_.row_entries();
+  const int32_t entries = p.entries();
   Normalizer& n = collector_.normalizer();
   std::copy_n(p.params, p.num_params(), nets_.net(Networks::kActor));
   if (eyes.points) std::copy_n(p.eyes_params, eyes.num_params(), nets_.eyes_net());
+  std::copy_n(
+      p.latent_params, p.latent.num_params(),
+      nets_.net(Networks::kActor) + (nets_.adapts() ? nets_.teacher_offset() : nets_.latent_offset()));
   if (!nets_.state_std()) std::copy_n(p.log_std, nets_.action_dim, nets_.log_std());
   clamp_log_std(nets_);
   restart_average(nets_);
@@ -475,6 +531,9 @@ PolicyView Agent::policy_view() {
   v.params = nets_.kept_actor();
   v.eyes = nets_.eyes;
   v.eyes_params = v.params + nets_.eyes_offset();
+  v.latent = nets_.latent;
+  v.latent.columns = latent_entries_, v.latent.own = own_entries_;
+  v.latent_params = v.params + nets_.latent_offset();
   if (nets_.state_std())
     v.state_std = true, v.std_bounds[0] = nets_.std_low, v.std_bounds[1] = nets_.std_high;
   else
@@ -507,7 +566,7 @@ void Agent::write_policy_file(Writer& out) {
 
 void Agent::update_policy(Policy& policy) {
   const FpMode mode;
-  need_same_shape(policy.view());
+  need_same_shape(policy.view(), true);
   const PolicyView now = policy_view();
   if (policy.view().action_repeat != now.action_repeat)
     fail(Code::kArgument, "policy: action_repeat differs from the agent's");

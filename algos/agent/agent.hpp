@@ -264,14 +264,17 @@ class Agent {
   uint64_t generation_of(const float* actor) const;
   // Of the actor that others get to see, valid until statistics move.
   PolicyView policy_view();
-  // Error(kArgument) names what differs.
-  void need_same_shape(const PolicyView& policy) const;
+  // Error(kArgument) names what differs. own: from the agent's files; else from what it may begin with, which of a
+  // student is its teacher's.
+  void need_same_shape(const PolicyView& policy, bool own) const;
   uint64_t learned_hash() const;
   void begin_decision(const char* call);
   // Error(kState) for what another policy sampled.
   void need_generation(const char* call, const Transition& t);
   void need_clouds(const DemoRows& demo) const;
   void find_history_entries();
+  void find_latent_entries();
+  void need_same_latent(const PolicyView& policy, bool own) const;
   // action_std and entropy: of the policy now, or with std_mode=state as it was on the epoch's data.
   bool spread_on();
   void add_spread(const float* log_std, double share, double count, double* out) const;
@@ -287,6 +290,7 @@ class Agent {
   Arena arena_;
   BatchWorkers workers_;
   Networks nets_;
+  StillLoss still_;  // of a student's policy
   Collector collector_;
   Learner learner_;
   RateSchedule schedule_;
@@ -303,8 +307,10 @@ class Agent {
   Imitation imitation_;
   char (*names_)[kTensorNameSize] = nullptr;  // of the tensors
   const ObsField* fields_ = nullptr;          // [num_fields] for policy files
-  int32_t* history_entries_ = nullptr;        // [history_width] of those that the actor sees; null: the first
-  float* seen_statistics_ = nullptr;          // [2][actor_entries], where the actor sees a part of a row
+  // What an encoder of a latent and the network behind it read, of the entries that the actor sees with their history.
+  int32_t *latent_entries_ = nullptr, *own_entries_ = nullptr;
+  int32_t* history_entries_ = nullptr;  // [history_width] of those that the actor sees; null: the first
+  float* seen_statistics_ = nullptr;    // [2][actor_entries], where the actor sees a part of a row
 };
 
 }  // namespace rdm

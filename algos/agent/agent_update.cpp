@@ -4,7 +4,7 @@
 //   estimate  advantages and targets, a column at a time; the list of rows
 //   judge     episodes' costs against their limits, the algorithm's begin_epoch
 //   step      the algorithm's own step of the policy, where it has one (a trust region)
-//   passes    shuffled minibatches: what the algorithm measures, the gradient, Adam's step; the KL that may end
+//   passes    (of a student, option latent_from=history, nothing else: its encoder's) shuffled minibatches: what the algorithm measures, the gradient, Adam's step; the KL that may end
 //             them; then an algorithm's second passes, of the policy alone
 //   end       schedules, the Epoch, an empty rollout
 //
@@ -79,7 +79,8 @@ bool Agent::update_on(int32_t units, Epoch* out) {
 // Short work until there is a job, of which it does one unit. What takes its time otherwise is one too.
 void Agent::unit(bool whole) {
   check_cancel();
-  const PolicyLoss* policy = run_.warm ? nullptr : policy_loss();
+  const bool adapts = resolved_.adapts();  // nothing of the algorithm's own
+  const PolicyLoss* policy = adapts ? &still_ : run_.warm ? nullptr : policy_loss();
   while (!job_) switch (phase_) {
       case Phase::kEstimate:
         if (collector_.estimate_on()) phase_ = Phase::kJudge;
@@ -96,8 +97,8 @@ void Agent::unit(bool whole) {
           return begin_pass();
         run_.turn_passes = 0;
         if (!run_.second && ++run_.turn < (run_.warm ? 1 : turns())) {
-          if (!run_.warm) job_ = begin_turn(run_.turn);
-        } else if (policy && !run_.second && second_passes() > 0) {
+          if (!run_.warm && !adapts) job_ = begin_turn(run_.turn);
+        } else if (policy && !adapts && !run_.second && second_passes() > 0) {
           run_.second = true;
           job_ = begin_second();
         } else {
@@ -109,16 +110,16 @@ void Agent::unit(bool whole) {
         if (!next_minibatch()) {
           end_pass(policy);
         } else {
-          if (policy) job_ = measure_minibatch(run_.batch);
+          if (policy && !adapts) job_ = measure_minibatch(run_.batch);
           phase_ = Phase::kGradient;
         }
         break;
       case Phase::kGradient:
-        if (policy) {
+        if (policy && !adapts) {
           begin_minibatch(learner_.measured());
           imitation_.draw(run_.batch.rows);
         }
-        job_ = learner_.begin_gradient(policy, run_.turn == 0 && !run_.second, run_.batch);
+        job_ = learner_.begin_gradient(policy, run_.turn == 0 && !run_.second && !adapts, run_.batch);
         phase_ = Phase::kAdam;
         break;
       case Phase::kAdam:
@@ -148,13 +149,13 @@ void Agent::judge_epoch() {
   run_ = Run();
   run_.stats = collector_.episodes().stats();
   run_.totals = collector_.totals();
-  run_.warm = epoch_ < resolved_.shared.warm_epochs;
+  run_.warm = epoch_ < resolved_.shared.warm_epochs && !resolved_.adapts();
   run_.skipped = this->skipped();
   learned_ = Learned();
   imitation_.begin_epoch(std::max(0, epoch_ - resolved_.shared.warm_epochs));
   warn_of_limits(run_.stats);
   phase_ = valid_rows() > 0 ? Phase::kPass : Phase::kSpread;
-  if (run_.warm) return;
+  if (run_.warm || resolved_.adapts()) return;
   begin_epoch(judge(resolved_, run_.stats, run_.totals), epoch_ + 1);
   imitation_.draw(valid_rows());
   if (valid_rows() == 0) return;
@@ -208,7 +209,8 @@ void Agent::end_update() {
     const double rounds = warm ? 1 : turns();
     learned_.mean.reward_loss *= rounds, learned_.mean.cost_loss *= rounds;
   }
-  if (!warm && valid_rows() > 0) report(learned_);
+  const bool own = !warm && !resolved_.adapts();  // the algorithm's step
+  if (own && valid_rows() > 0) report(learned_);
   const int64_t skipped = this->skipped() - run_.skipped;
   if (skipped > 0)
     log(resolved_.config.hooks, LogLevel::kWarning, "update: %lld gradients were not finite and left out",
@@ -218,7 +220,7 @@ void Agent::end_update() {
   collector_.episodes().mark();
   collector_.close_usual();
   ++epoch_;
-  if (!warm) schedule_std(nets_, resolved_.shared, epoch_);
+  if (own) schedule_std(nets_, resolved_.shared, epoch_);
   if (!warm) average_actor(nets_);
   end_run();  // whatever fails from here on, it is the next policy
   Epoch& e = run_.epoch;

@@ -30,6 +30,12 @@ void Learner::refresh_log_std() {
     log_std_[j] = nets_->log_std()[j] + resolved_->log_share;
 }
 
+void StillLoss::add(const PolicyChunk& chunk) const {
+  for (size_t i = 0; i < static_cast<size_t>(chunk.rows); ++i)
+    chunk.sums->kl += sample_kl(*chunk.rollout, static_cast<size_t>(chunk.order[i]), chunk.first_part,
+                                chunk.last_part, chunk.mean_of(i), chunk.log_std_of(i));
+}
+
 PolicyChunk Learner::chunk_of(Workspace& workspace, const int32_t* order, int32_t rows, float* grad) const {
   PolicyChunk p{rollout_, order,          rows, workspace.out,  log_std_,
                 scale_,   workspace.dout, grad, &workspace.sums};
@@ -155,6 +161,10 @@ void Learner::policy_gradient(Workspace& workspace, const PolicyLoss& policy, co
     std::fill_n(chunk.dlog_std_of(i), dim,
                 policy.explores() ? -scale_ * static_cast<float>(shared().entropy) : 0.0f);
   policy.add(chunk);
+  if (nets_->adapts()) {
+    workspace.sums.loss += nets_->regress_latent(workspace.obs, rows, scale_, workspace.actor, grad);
+    return;
+  }
   if (state) nets_->gate_std(workspace.out, rows, workspace.dout);
   backward_policy(workspace, memory, order, rows, grad);
 }

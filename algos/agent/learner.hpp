@@ -4,6 +4,8 @@
 //
 //   policy   1/N sum_B L(rho, A) - entropy H(pi) + the imitation term (imitation/imitation.hpp)
 //   critics  1/N sum_B (V - target)^2 + l2 |w|^2
+//   latent   1/N sum_B |z - mu|^2, of a student (option latent_from=history) in the place of both: z of its encoder, mu
+//            of the teacher's, and nothing but its encoder learns
 //
 // with L the algorithm's (PolicyLoss), rho = pi(a|s) / pi_old(a|s), V of the reward or of a limited cost,
 // each network with an Adam of its own (Kingma and Ba 2015) behind a bound on its gradient's norm, or one
@@ -59,6 +61,13 @@ class PolicyLoss {
 
  protected:
   ~PolicyLoss() = default;
+};
+
+// Of a policy that stands still: how far it is from the one that acted.
+class StillLoss final : public PolicyLoss {
+ public:
+  void add(const PolicyChunk& chunk) const override;
+  bool explores() const override { return false; }
 };
 
 class Learner {

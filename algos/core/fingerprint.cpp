@@ -18,7 +18,8 @@ constexpr const char* kWhat = "agent state";
 // before it, only where an option of it or of a later one is not at its default: so files of before load, and an
 // agent that uses none writes what it always did.
 constexpr const char* kLater[][4] = {{"cost_limit_per_step", "episode_steps"},
-                                     {"history", "history_fields", "memory", "memory_chunk"}};
+                                     {"history", "history_fields", "memory", "memory_chunk"},
+                                     {"latent", "latent_fields", "latent_hidden", "latent_from"}};
 constexpr int32_t kGroups = static_cast<int32_t>(std::size(kLater));
 
 // The group of an option, from 1 on; 0: of the first files.

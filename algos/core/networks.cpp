@@ -15,6 +15,9 @@ constexpr uint32_t kEyesStream = 3;    // of initial weights, behind those of th
 constexpr uint32_t kGroupsStream = 4;  // of the second group's, and on; the first has the actor's
 constexpr uint32_t kCriticsStream = kGroupsStream + kMaxGroups;  // likewise of critics, of each kind
 
+constexpr uint32_t kLatentStream = kCriticsStream + 2 * kMaxGroups;  // of a latent's encoder
+constexpr uint32_t kStudentStream = kLatentStream + 1;               // of the one that is a student's
+
 // Bound on what a network of a loaded state may give: far beyond any that learns, and a float still holds its
 // square.
 constexpr double kMaxOutput = 1e18;
@@ -61,6 +64,9 @@ Networks carve_networks(Arena& arena, const ResolvedAgentConfig& resolved) {
   n.actor_params = resolved.actor_params();
   n.eyes = resolved.eyes;
   n.frozen = resolved.frozen;
+  n.latent = resolved.latent;
+  n.teacher = resolved.teacher;
+  n.teacher_columns = list(resolved.teacher_columns);
   n.count = resolved.off_policy() ? 1 : resolved.values_costs ? 3 : 2;
   n.action_dim = resolved.config.action_dim;
   n.std_size = resolved.state_std() ? 0 : (resolved.action_dim() + 15) / 16 * 16;
@@ -72,7 +78,8 @@ Networks carve_networks(Arena& arena, const ResolvedAgentConfig& resolved) {
   for (int32_t i = 0; i < n.count; ++i) {
     n.block[i].offset = n.size;
     n.block[i].size = n.critic[i] ? group_params(n.critic[i], n.num_critics) : n.shape[i].num_params();
-    if (i == Networks::kActor) n.block[i].size = n.actor_params + n.std_size + n.eyes.num_params();
+    if (i == Networks::kActor)
+      n.block[i].size = n.std_size + n.teacher_offset() + (n.adapts() ? n.teacher.num_params() : 0);
     n.size += (n.block[i].size + 15) / 16 * 16;
   }
   n.params = arena.make<float>(n.size);
@@ -120,6 +127,19 @@ ActorScratch carve_actor_scratch(Arena& arena, const ResolvedAgentConfig& resolv
   static_cast<MlpScratch&>(s) = carve_mlp_scratch(arena, resolved.actor, rows);
   if (!resolved.actor_columns.empty() || resolved.sees())
     s.picked = arena.make<float>(n * static_cast<size_t>(resolved.actor.in));
+  const auto encoder = [&](const MlpShape& shape) {
+    MlpScratch own = carve_mlp_scratch(arena, shape, rows);
+    own.picked = arena.make<float>(n * static_cast<size_t>(shape.in));
+    return own;
+  };
+  if (const auto numbers = static_cast<size_t>(resolved.latent.mlp.out)) {
+    s.picked = arena.make<float>(n * static_cast<size_t>(resolved.actor.in));
+    s.latent = encoder(resolved.latent.mlp);
+    s.z = arena.make<float>(n * numbers);
+    s.dz = arena.make<float>(n * numbers);
+    if (resolved.adapts()) s.teacher = encoder(resolved.teacher), s.taught = arena.make<float>(n * numbers);
+    return s;
+  }
   if (resolved.gru.units)
     s.memory = carve_recurrent_scratch(arena, {resolved.actor, resolved.gru}, rows, resolved.trusts());
   if (!resolved.sees()) return s;
@@ -133,6 +153,7 @@ ActorScratch carve_actor_scratch(Arena& arena, const ResolvedAgentConfig& resolv
 void Networks::forward_actor_with(const float* weights, const float* x, const PointRows& clouds, int32_t rows,
                                   const ActorScratch& scratch, float* y) const {
   if (num_groups) return forward_groups(weights, x, rows, scratch, y);
+  if (latent) return forward_latent(weights, x, rows, scratch, y);
   if (!eyes.points) return forward_with(weights, kActor, x, rows, scratch, y);
   const size_t in = feature_step(), own = static_cast<size_t>(actor_entries()), width = in - own;
   for (size_t i = 0; i < static_cast<size_t>(rows); ++i) {
@@ -150,6 +171,47 @@ void Networks::forward_actor_with(const float* weights, const float* x, const Po
                      scratch.winner);
   mlp_forward(shape[kActor], weights, scratch.picked, rows, scratch, y);
   if (state_std()) bound_std(rows, y);
+}
+
+void Networks::forward_latent(const float* weights, const float* x, int32_t rows, const ActorScratch& scratch,
+                              float* y) const {
+  pick_columns(x, rows, obs_dim, latent.columns, latent.mlp.in, scratch.latent.picked);
+  mlp_forward(latent.mlp, weights + latent_offset(), scratch.latent.picked, rows, scratch.latent, scratch.z);
+  put_latent(latent, x, obs_dim, scratch.z, rows, scratch.picked);
+  mlp_forward(shape[kActor], weights, scratch.picked, rows, scratch, y);
+  if (state_std()) bound_std(rows, y);
+}
+
+// Of a student nothing but its encoder.
+void Networks::backward_latent(int32_t rows, const ActorScratch& scratch, const float* dy,
+                               float* grad) const {
+  float* const to = grad + net_offset(kActor);
+  if (adapts()) std::fill_n(to, latent_offset(), 0.0f);
+  mlp_backward(shape[kActor], net(kActor), scratch.picked, rows, scratch, dy, adapts() ? nullptr : to,
+               latent.num_own, scratch.dz);
+  mlp_backward(latent.mlp, net(kActor) + latent_offset(), scratch.latent.picked, rows, scratch.latent,
+               scratch.dz, to + latent_offset());
+  if (adapts()) std::fill_n(to + teacher_offset(), teacher.num_params(), 0.0f);
+}
+
+double Networks::regress_latent(const float* x, int32_t rows, float scale, const ActorScratch& scratch,
+                                float* grad) const {
+  float* const to = grad + block[kActor].offset;
+  std::fill_n(to, std_size + latent_offset(), 0.0f);
+  pick_columns(x, rows, obs_dim, teacher_columns, teacher.in, scratch.teacher.picked);
+  mlp_forward(teacher, net(kActor) + teacher_offset(), scratch.teacher.picked, rows, scratch.teacher,
+              scratch.taught);
+  const size_t count = static_cast<size_t>(rows) * static_cast<size_t>(latent.mlp.out);
+  double sum = 0;
+  for (size_t i = 0; i < count; ++i) {
+    const float gap = scratch.z[i] - scratch.taught[i];
+    sum += static_cast<double>(gap) * static_cast<double>(gap);
+    scratch.dz[i] = 2 * scale * gap;
+  }
+  mlp_backward(latent.mlp, net(kActor) + latent_offset(), scratch.latent.picked, rows, scratch.latent,
+               scratch.dz, to + std_size + latent_offset());
+  std::fill_n(to + std_size + teacher_offset(), teacher.num_params(), 0.0f);
+  return sum;
 }
 
 // Of all groups, whichever learns: what the others give stays what it is.
@@ -269,6 +331,7 @@ void Networks::backward_actor(const float* x, const PointRows& clouds, int32_t r
     mlp_backward(g.shape, net(kActor) + g.offset, g.columns ? own.picked : x, rows, own, scratch.part, to);
   }
   if (num_groups) return;
+  if (latent) return backward_latent(rows, scratch, dy, grad);
   if (!eyes.points) return backward(kActor, x, rows, scratch, dy, grad);
   float* const net_grad = grad + net_offset(kActor);
   float* const eyes_grad = net_grad + eyes_offset();
@@ -294,6 +357,12 @@ void Networks::tangent_actor(const float* direction, const float* x, const Point
     spread_outputs(g, scratch.part, rows, static_cast<size_t>(shape[kActor].out), dy);
   }
   if (num_groups) return;
+  if (latent) {
+    mlp_tangent(latent.mlp, net(kActor) + latent_offset(), direction + latent_offset(), scratch.latent.picked,
+                rows, scratch.latent, scratch.dz);
+    return mlp_tangent(shape[kActor], net(kActor), direction, scratch.picked, rows, scratch, dy,
+                       latent.num_own, scratch.dz);
+  }
   if (!eyes.points) return tangent(kActor, direction, x, rows, scratch, dy);
   if (!frozen)
     pointnet_tangent(eyes, eyes_net(), direction + eyes_offset(), clouds, rows, scratch.eyes,
@@ -326,6 +395,14 @@ void init_networks(const Networks& n, const ResolvedAgentConfig& resolved) {
   if (n.eyes.points) {
     Stream stream(resolved.config.seed, kEyesStream, Purpose::kInit);
     mlp_init(n.eyes.mlp, stream, 1, n.eyes_net());
+  }
+  if (n.latent) {
+    Stream stream(resolved.config.seed, kLatentStream, Purpose::kInit);
+    float* const actor = n.net(Networks::kActor);
+    mlp_init(n.adapts() ? n.teacher : n.latent.mlp, stream, 1,
+             actor + (n.adapts() ? n.teacher_offset() : n.latent_offset()));
+    Stream own(resolved.config.seed, kStudentStream, Purpose::kInit);
+    if (n.adapts()) mlp_init(n.latent.mlp, own, 1, actor + n.latent_offset());
   }
   // Of a network whose last layer's biases are these.
   const auto first_actions = [&](float* bias, int32_t first, int32_t count) {
@@ -410,12 +487,15 @@ int32_t Networks::num_tensors() const {
   for (int32_t i = num_groups ? 1 : 0; i < count; ++i)
     tensors += 2 * shape[i].num_layers() * (i ? num_critics : 1);
   return tensors + (gru.units ? kGruTensors * std::max(num_groups, 1) : 0) +
-         (eyes.points ? 2 * eyes.mlp.num_layers() : 0);
+         (eyes.points ? 2 * eyes.mlp.num_layers() : 0) + (latent ? 2 * latent.mlp.num_layers() : 0) +
+         (adapts() ? 2 * teacher.num_layers() : 0);
 }
 
 void Networks::visit(StateIo& io) {
   // Bound on what the actor's network sees, its features too.
   const auto input_of = [&](const StateView<float>& p, size_t at) {
+    if (latent)
+      return std::max(input_bound, mlp_bound(latent.mlp, From{p, at + latent_offset()}, input_bound));
     if (!eyes.points) return input_bound;
     return std::max(input_bound, mlp_bound(eyes.mlp, From{p, at + eyes_offset()}, largest_point(eyes)));
   };
@@ -423,8 +503,8 @@ void Networks::visit(StateIo& io) {
   const StateView<float> p = io.numbers(params, size, -kMaxOutput, kMaxOutput);
   // Bound on what the actor gives, whose networks begin at `at`.
   const auto actor_bound = [&](const StateView<float>& list, size_t at) {
-    if (!num_groups) return recurrent_bound(actor(), From{list, at}, input_of(list, at));
-    double most = 0;
+    double most = adapts() ? mlp_bound(teacher, From{list, at + teacher_offset()}, input_bound) : 0;
+    if (!num_groups) return std::max(most, recurrent_bound(actor(), From{list, at}, input_of(list, at)));
     for (int32_t g = 0; g < num_groups; ++g)
       most = std::max(most, recurrent_bound(group[g].net(), From{list, at + group[g].offset}, input_bound));
     return most;
@@ -522,6 +602,12 @@ bool find_tensor(const Networks& n, int32_t index, char* name, TensorInfo* out) 
   if (n.gru.units && !n.num_groups && index < kGruTensors) return gru(n.actor(), "", "", actor);
   if (n.eyes.points && index < 2 * n.eyes.mlp.num_layers())
     return layer("encoder", {n.eyes.mlp, GruShape()}, n.eyes_net());
+  if (const int32_t tensors = n.latent ? 2 * n.latent.mlp.num_layers() : 0; tensors > 0) {
+    if (index < tensors) return layer("latent", {n.latent.mlp, GruShape()}, actor + n.latent_offset());
+    index -= tensors;
+  }
+  if (n.adapts() && index < 2 * n.teacher.num_layers())
+    return layer("teacher", {n.teacher, GruShape()}, actor + n.teacher_offset());
   return false;
 }
 

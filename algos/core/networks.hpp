@@ -10,6 +10,10 @@
 // With option memory a GRU stands before the actor's last layer, or that of each group: its state comes from whoever
 // runs it, those of groups one behind the other. With option history the rows are stacked ones (rollout/memory.hpp).
 //
+// With option latent the actor's network reads its own entries and a latent, which an encoder makes of others; its
+// parameters stand behind the eyes'. Those of a student have the teacher's encoder behind them, which makes what it
+// learns; then nothing but the student's encoder learns.
+//
 // Critics of an algorithm whose groups have their own stand likewise in the block of their kind.
 //
 // With std_mode=state there is no such deviation: the actor's network gives, behind each row's means, its log
@@ -38,6 +42,9 @@ struct ActorScratch : MlpScratch {
   float* part = nullptr;                     // [rows][widest output of a group]
   RecurrentScratch* group_memory = nullptr;  // [groups], where they have GRUs
   float* part_state = nullptr;               // [rows][units] of one
+  MlpScratch latent, teacher;                // of the encoders of a latent, what they read picked
+  float *z = nullptr, *dz = nullptr,
+        *taught = nullptr;  // [rows][latent] given, its derivative, the teacher's
 };
 // Steps of rows that an actor with a GRU runs over; zeros as h0 and no clears begin and keep its memory.
 struct MemorySteps {
@@ -65,11 +72,14 @@ struct Networks {
   // Critics of groups [num_critics] of each kind, by Index; null: one serves all.
   const ActorGroup* critic[3] = {};
   int32_t num_critics = 1;
-  int64_t* critic_steps[3] = {};  // [num_critics] of Adam
-  int32_t focus = -1;             // the group that learns now, -1: all
-  size_t actor_params = 0;        // of the actor's networks, its eyes apart
-  PointNetShape eyes;             // of the actor; points 0: none
-  bool frozen = false;            // eyes do not learn
+  int64_t* critic_steps[3] = {};             // [num_critics] of Adam
+  int32_t focus = -1;                        // the group that learns now, -1: all
+  size_t actor_params = 0;                   // of the actor's networks, its eyes apart
+  PointNetShape eyes;                        // of the actor; points 0: none
+  bool frozen = false;                       // eyes do not learn
+  LatentShape latent;                        // of the actor, columns of the stacked row
+  MlpShape teacher;                          // of a student, out 0: it is none
+  const int32_t* teacher_columns = nullptr;  // [teacher.in]
   Block block[3];
   int32_t count = 0;    // 2 without cost critic
   size_t size = 0;      // of params
@@ -99,6 +109,9 @@ struct Networks {
   const float* kept_actor() const { return kept_log_std() + std_size; }
   // Of the encoder's parameters behind those of the actor's network.
   size_t eyes_offset() const { return actor_params; }
+  size_t latent_offset() const { return eyes_offset() + eyes.num_params(); }
+  size_t teacher_offset() const { return latent_offset() + latent.num_params(); }
+  bool adapts() const { return teacher.out > 0; }
   RecurrentShape actor() const { return {shape[kActor], gru}; }
   bool learns(int32_t g) const { return focus < 0 || g == focus; }
   // The groups that learn now: [first_group(), last_group()); of an actor of one network one.
@@ -110,7 +123,9 @@ struct Networks {
   float* eyes_net() const { return net(kActor) + eyes_offset(); }
   // Entries of the row that the actor sees, before its features.
   int32_t actor_entries() const { return shape[kActor].in - eyes.features(); }
-  int32_t row_entries() const { return actor_entries() - history_inputs; }  // without its history
+  int32_t row_entries() const {  // without its history
+    return latent ? latent.entries : actor_entries() - history_inputs;
+  }
   // y = network i of the rows x [rows][obs_dim], and the gradient of its block, grad laid out as params; x
   // and scratch as in the forward pass before. The actor's log deviations are those of the innovation, within
   // their bounds.
@@ -145,6 +160,10 @@ struct Networks {
                       const float* dy, float* grad) const;
   void tangent_actor(const float* direction, const float* x, const PointRows& clouds, int32_t rows,
                      const ActorScratch& scratch, float* dy) const;
+  // Of a student, after its forward pass over the rows x: the sum of (z - mu)^2 over them and over z, mu being the
+  // teacher's latent, and in grad scale times its gradient, 0 for all but the student's encoder.
+  double regress_latent(const float* x, int32_t rows, float scale, const ActorScratch& scratch,
+                        float* grad) const;
   // Features of the rows in the scratch of the last forward pass, feature_step() apart.
   const float* features(const ActorScratch& scratch) const { return scratch.picked + actor_entries(); }
   size_t feature_step() const { return static_cast<size_t>(shape[kActor].in); }
@@ -172,6 +191,9 @@ struct Networks {
   }
   void forward_actor_with(const float* weights, const float* x, const PointRows& clouds, int32_t rows,
                           const ActorScratch& scratch, float* y) const;
+  void forward_latent(const float* weights, const float* x, int32_t rows, const ActorScratch& scratch,
+                      float* y) const;
+  void backward_latent(int32_t rows, const ActorScratch& scratch, const float* dy, float* grad) const;
   void forward_critics(int32_t i, const float* x, int32_t rows, const ActorScratch& scratch, float* y) const;
   void backward_critics(int32_t i, const float* x, int32_t rows, const ActorScratch& scratch, const float* dy,
                         float* grad) const;

@@ -6,6 +6,7 @@
 #include "algos/core/agent_types.hpp"
 #include "algos/core/shared_options.hpp"
 #include "base/option_rows.hpp"
+#include "nn/latent.hpp"
 #include "nn/policy.hpp"
 
 namespace rdm {
@@ -218,7 +219,18 @@ inline constexpr auto kSharedRows = [] {
           "memory of the actor: gru:UNITS, a gated recurrent unit before its last layer; empty: none")),
       row<&S::memory_chunk>(
           integer_option("memory_chunk", 16, 1, 1 << 16,
-                         "decisions in a row through which the gradient of a memory flows back")));
+                         "decisions in a row through which the gradient of a memory flows back")),
+      // latent
+      row<&S::latent>(integer_option(
+          "latent", 0, 0, kMaxLatent,
+          "numbers that an encoder makes of latent_fields, which the actor reads in their place; 0: none")),
+      row<&S::latent_fields>(text_option("latent_fields", "dynamics.*", nullptr,
+                                         "fields of the latent, written as in actor_obs", kLongestObs)),
+      row<&S::latent_hidden>(text_option("latent_hidden", "64,32", nullptr,
+                                         "widths of the hidden layers of the latent's encoder")),
+      row<&S::latent_student, false, true>(text_option(
+          "latent_from", "fields", "fields|history",
+          "what its encoder reads: latent_fields; history: a student's, the only part that then learns")));
 }();
 
 // The window alone: a rule with multipliers or one without.

@@ -267,6 +267,85 @@ void resolve_history(ResolvedAgentConfig& resolved) {
     }
 }
 
+// Which fields become the latent: the actor's network reads the others. A student reads them in
+// learning alone.
+void resolve_latent_fields(ResolvedAgentConfig& resolved) {
+  const AgentConfig& c = resolved.config;
+  const SharedOptions& o = resolved.shared;
+  if (o.latent == 0) {
+    if (o.latent_student) fail(Code::kArgument, "latent_from: it needs option latent above 0");
+    return;
+  }
+  if (!resolved.groups.empty())
+    fail(Code::kUnsupported,
+         "latent: it cannot be combined with several groups yet; groups=all has one network");
+  if (*o.encoder) fail(Code::kUnsupported, "latent: it cannot be combined with option encoder yet");
+  if (*o.memory)
+    fail(Code::kUnsupported,
+         "latent: it cannot be combined with option memory yet; a student has option history");
+  if (o.latent_student && o.history == 1)
+    fail(Code::kArgument, "latent_from: history needs option history above 1");
+  if (!o.latent_student && o.history > 1)
+    fail(Code::kUnsupported,
+         "history: the network of a latent reads none; latent_from=history makes a student, whose encoder "
+         "does");
+  Vector<int32_t> hidden =
+      select_columns("latent_fields", o.latent_fields, c.fields, c.num_fields, c.obs_dim);
+  Vector<int32_t> seen = resolved.actor_columns;
+  for (int32_t i = 0; seen.size() < resolved.obs_dim() && resolved.actor_columns.empty(); ++i)
+    seen.push_back(i);
+  Vector<int32_t>& own = resolved.own_columns;
+  own.reserve(seen.size());
+  std::set_difference(seen.begin(), seen.end(), hidden.begin(), hidden.end(), std::back_inserter(own));
+  if (hidden.empty() || own.empty())
+    fail(Code::kArgument, "latent_fields: they leave the actor's network no entry of the observation");
+  if (own.size() + hidden.size() != seen.size())
+    fail(Code::kArgument, "latent_fields: it names fields that the actor does not observe (actor_obs)");
+  if (o.latent_student) {
+    // its encoder may read more than the network
+    const Vector<int32_t> read = *o.history_fields ? select_columns("history_fields", o.history_fields,
+                                                                    c.fields, c.num_fields, c.obs_dim)
+                                                   : own;
+    const auto drawn = [&](int32_t i) { return std::binary_search(hidden.begin(), hidden.end(), i); };
+    if (read.empty() || std::any_of(read.begin(), read.end(), drawn))
+      fail(Code::kArgument,
+           "history_fields: it names fields of the latent, which a student does not observe");
+    Vector<int32_t>& both = resolved.actor_columns = {};
+    both.reserve(own.size() + read.size());
+    std::set_union(own.begin(), own.end(), read.begin(), read.end(), std::back_inserter(both));
+    seen = both;
+    resolved.teacher_columns = std::move(hidden);
+  } else {
+    resolved.latent_columns = std::move(hidden);
+  }
+  resolved.latent.entries = static_cast<int32_t>(seen.size());
+}
+
+// The shapes, once it is known what the history is. A student's encoder reads the fields of its history, as they are
+// now too.
+void resolve_latent(ResolvedAgentConfig& resolved) {
+  const AgentConfig& c = resolved.config;
+  const SharedOptions& o = resolved.shared;
+  if (o.latent == 0) return;
+  Vector<int32_t>& read = resolved.latent_columns;
+  const auto encoder = [&](const Vector<int32_t>& columns) {
+    const MlpShape s = parse_shape("latent_hidden", o.latent_hidden, o.activation,
+                                   static_cast<int32_t>(columns.size()), o.latent);
+    check_mlp_shape(s);
+    return s;
+  };
+  if (o.latent_student) {
+    read = resolved.history_columns;
+    for (int32_t i = 0; i < resolved.history_inputs(); ++i) read.push_back(c.obs_dim + i);
+    resolved.teacher = encoder(resolved.teacher_columns);
+  }
+  LatentShape& l = resolved.latent;
+  l.mlp = encoder(read);
+  l.columns = read.data();
+  l.own = resolved.own_columns.data();
+  l.num_own = static_cast<int32_t>(resolved.own_columns.size());
+}
+
 // Units of a memory, 0: none.
 void resolve_memory(ResolvedAgentConfig& resolved, int32_t units) {
   resolved.gru = with_gru(resolved.actor, units).gru;
@@ -296,8 +375,12 @@ void resolve_networks(ResolvedAgentConfig& resolved) {
   resolved.critic_columns = columns("critic_obs", o.critic_obs);
   const int32_t units = parse_units(o.memory);
   resolve_groups(resolved, units);
+  resolve_latent_fields(resolved);
   resolve_history(resolved);
-  const int32_t actor_in = inputs(resolved.actor_columns), critic_in = inputs(resolved.critic_columns);
+  resolve_latent(resolved);
+  const int32_t actor_in = resolved.latent ? resolved.latent.num_own + resolved.latent.mlp.out
+                                           : inputs(resolved.actor_columns),
+                critic_in = inputs(resolved.critic_columns);
   resolve_eyes(resolved);
   const auto critic = [&](int32_t outputs) {
     return *o.critic_hidden ? parse_shape("critic_hidden", o.critic_hidden, o.activation, critic_in, outputs)
@@ -379,6 +462,8 @@ void check_pairs(const ResolvedAgentConfig& resolved) {
       fail(Code::kRange, "init_std: it equals std_min or std_max, where std_mode=state has no gradient");
   }
   if (o.lr_min > o.lr_max) fail(Code::kRange, "lr_min: it is above lr_max");
+  if (o.latent_student && o.imitation > 0)
+    fail(Code::kUnsupported, "imitation: with latent_from=history the policy stays as it is");
   if (o.terminal_cost && resolved.episode_steps <= 0)
     fail(Code::kArgument,
          "terminal_cost: it needs the length of an episode: set config.max_steps or option episode_steps");

@@ -8,6 +8,7 @@
 #include "algos/core/groups.hpp"
 #include "algos/core/shared_options.hpp"
 #include "nn/gru.hpp"
+#include "nn/latent.hpp"
 #include "nn/pointnet.hpp"
 
 namespace rdm {
@@ -33,6 +34,11 @@ struct ResolvedAgentConfig {
   // decisions before it, newest first, history_width numbers each, history - 1 times.
   int32_t history = 1, history_width = 0;
   Vector<int32_t> history_columns;
+  // Option latent: what the actor reads in place of latent_fields, and of a student (latent_from=history) what makes the
+  // latent that its encoder learns to give, of teacher_columns. Columns are of the stacked row.
+  LatentShape latent;
+  MlpShape teacher;  // out 0: it is no student
+  Vector<int32_t> own_columns, latent_columns, teacher_columns;
   GruShape gru;  // of the actor, before its last layer; units 0: none; of each group so many
   // Entries of the stacked row that these see, ascending; empty: all.
   Vector<int32_t> actor_columns, critic_columns;
@@ -70,6 +76,8 @@ struct ResolvedAgentConfig {
   // It learns in a trust region, by Fisher products.
   bool trusts() const { return options.knows("trust_kl"); }
   bool sees() const { return eyes.points > 0; }
+  // It is a student: all that learns is the encoder of its history.
+  bool adapts() const { return teacher.out > 0; }
   // The actor's network gives log deviations behind its means.
   bool state_std() const { return actor.out != config.action_dim; }
   size_t obs_dim() const { return static_cast<size_t>(config.obs_dim); }

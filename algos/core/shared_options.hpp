@@ -61,6 +61,10 @@ struct SharedOptions {
   int32_t history;
   const char *history_fields, *memory;
   int32_t memory_chunk;
+  // latent
+  int32_t latent;
+  const char *latent_fields, *latent_hidden;
+  bool latent_student;  // latent_from
 };
 
 }  // namespace rdm

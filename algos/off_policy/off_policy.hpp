@@ -68,14 +68,16 @@ inline constexpr auto kReplaySharedRows =
                  &SharedOptions::early_stop_kl, &SharedOptions::entropy, &SharedOptions::joint_grad_norm,
                  &SharedOptions::value_clip, &SharedOptions::critic_l2, &SharedOptions::warm_epochs,
                  &SharedOptions::imitation, &SharedOptions::imitation_decay, &SharedOptions::history,
-                 &SharedOptions::history_fields, &SharedOptions::memory, &SharedOptions::memory_chunk>()
+                 &SharedOptions::history_fields, &SharedOptions::memory, &SharedOptions::memory_chunk,
+                 &SharedOptions::latent, &SharedOptions::latent_fields, &SharedOptions::latent_hidden,
+                 &SharedOptions::latent_student>()
         .with<&SharedOptions::horizon>(64)
         .with<&SharedOptions::hidden>("256,256")
         .with<&SharedOptions::activation>("relu")
         .with<&SharedOptions::max_grad_norm>(0.0);
 // The others, as they are then.
 inline SharedOptions with_replay(SharedOptions o) {
-  o.encoder = o.memory = o.history_fields = "";
+  o.encoder = o.memory = o.history_fields = o.latent_fields = o.latent_hidden = "";
   o.encoder_origin = "0,0,0", o.encoder_range = 1;
   o.minibatches = o.blocks = o.history = o.memory_chunk = o.total_epochs = 1;
   return o;

@@ -268,7 +268,8 @@ void Collector::act(const float* obs, bool sample, float* action, const PointRow
 }
 
 void Collector::decide(const float* obs, const PointRows& clouds, float* action, const float* given) {
-  if (normalizes() && !(shared().obs_freeze > 0 && normalizer_.count >= shared().obs_freeze))
+  if (normalizes() && !nets_->adapts() &&
+      !(shared().obs_freeze > 0 && normalizer_.count >= shared().obs_freeze))
     merge(normalizer_, obs, nullptr, shared().obs_count_max);
   for (size_t j = 0; !nets_->state_std() && j < rollout_.action_dim; ++j) {
     rollout_.log_std[j] = nets_->log_std()[j] + resolved_->log_share;

@@ -85,7 +85,7 @@ Trainer begin_run(TrainFlags flags, const Ranks* ranks) {
   run.shield = read_shield_word(flags.shield);
   if (run.teach.asked()) {
     for (const Options& options :
-         {adopt_lesson(flags.teach_given, run.pool, run.teach), taught_options(run.teach)})
+         {adopt_lesson(flags.teach_given, run.pool, run.teach), taught_options(run.teach, run.agent.options)})
       run.agent.options.insert(run.agent.options.begin(), options.begin(), options.end());
   } else if (!std::all_of(flags.teach_given.begin(), flags.teach_given.end(),
                           [](const std::string& name) { return name.rfind("pretrain", 0) == 0; })) {

@@ -52,9 +52,12 @@ struct ActScratch {
   MlpScratch mlp;
   RecurrentScratch memory;
   PointNetScratch eyes;
-  float* obs = nullptr;   // what the network sees: normalised, with features
-  float* row = nullptr;   // with features or a history: entries before they stand beside these
-  float* head = nullptr;  // the network's outputs, with state_std
+  MlpScratch latent;
+  float* obs = nullptr;  // what the network sees: normalised, with features
+  float* row = nullptr;  // with features, a history or a latent: entries before they stand beside these
+  float *stacked = nullptr, *shown = nullptr,
+        *z = nullptr;                      // with a latent: its history too; what mu sees and gives
+  float* head = nullptr;                   // the network's outputs, with state_std
   float *seen = nullptr, *part = nullptr;  // of one group: what it sees and gives
   float* state = nullptr;                  // of one group
   size_t bytes = 0;
@@ -75,7 +78,13 @@ ActScratch cut_act_scratch(const PolicyView& v, int32_t rows, void* memory) {
   s.memory = cut_recurrent_scratch(cutter, v.net(), rows);
   s.obs = cutter.make(sz(rows) * sz(shape.in));
   if (v.eyes.points) s.eyes = cut_pointnet_scratch(cutter, v.eyes);
-  if (v.eyes.points || v.history > 1) s.row = cutter.make(sz(rows) * sz(v.entries()));
+  if (v.eyes.points || v.history > 1 || v.latent) s.row = cutter.make(sz(rows) * sz(v.entries()));
+  if (v.latent) {
+    s.latent = cut_forward_scratch(cutter, v.latent.mlp, rows);
+    s.stacked = cutter.make(sz(rows) * sz(v.entries() + v.history_inputs()));
+    s.shown = cutter.make(sz(rows) * sz(v.latent.mlp.in));
+    s.z = cutter.make(sz(rows) * sz(v.latent.mlp.out));
+  }
   s.head = cutter.make(v.state_std ? sz(rows) * sz(shape.out) : 0);
   if (v.num_groups) {
     s.seen = cutter.make(sz(rows) * sz(largest.in));
@@ -116,13 +125,22 @@ void act_outputs(const PolicyView& v, float* y, int32_t rows, const float* noise
   }
 }
 
-// Puts the history of rows behind their entries x in what the network sees, and then x into the history.
-void remember(const PolicyView& v, const float* x, int32_t rows, float* state, float* seen) {
+// Puts the history of rows behind their entries x in seen [rows][step], and then x into the history.
+void remember(const PolicyView& v, const float* x, int32_t rows, float* state, float* seen, int32_t step) {
   const size_t width = sz(v.history_inputs());
-  for (size_t i = 0; i < sz(rows); ++i, state += width, x += v.entries(), seen += v.actor.in) {
+  for (size_t i = 0; i < sz(rows); ++i, state += width, x += v.entries(), seen += step) {
     std::copy_n(state, width, seen + v.entries());
     push_history(state, v.history - 1, v.history_width, x, v.history_entries);
   }
+}
+
+// What pi sees, its z too, of rows with their history.
+void see_latent(const PolicyView& v, int32_t rows, const ActScratch& s) {
+  const LatentShape& l = v.latent;
+  const int32_t width = v.entries() + v.history_inputs();
+  pick_columns(s.stacked, rows, width, l.columns, l.mlp.in, s.shown);
+  mlp_forward(l.mlp, v.latent_params, s.shown, rows, s.latent, s.z);
+  put_latent(l, s.stacked, width, s.z, rows, s.obs);
 }
 
 // Group i of a policy: its entries of y, and of the states [rows][state_dim()].
@@ -165,9 +183,12 @@ void act_view(const PolicyView& v, const float* obs, const PointRows& clouds, in
       x = entries;
     }
     if (s.row) {
+      float* const seen = v.latent ? s.stacked : s.obs;
+      const int32_t step = v.latent ? v.entries() + v.history_inputs() : v.actor.in;
       for (size_t i = 0; i < sz(n); ++i)
-        std::copy_n(x + i * sz(v.entries()), v.entries(), s.obs + i * sz(v.actor.in));
-      if (v.history > 1) remember(v, x, n, state + sz(at) * sz(v.state_dim()), s.obs);
+        std::copy_n(x + i * sz(v.entries()), v.entries(), seen + i * sz(step));
+      if (v.history > 1) remember(v, x, n, state + sz(at) * sz(v.state_dim()), seen, step);
+      if (v.latent) see_latent(v, n, s);
       if (v.eyes.points)
         pointnet_forward(v.eyes, v.eyes_params, clouds.from(v.eyes, sz(at)), n, s.eyes, s.obs + v.entries(),
                          sz(v.actor.in), nullptr);
@@ -318,6 +339,19 @@ void write_ranges(Writer& out, const int32_t* columns, int32_t count) {
   });
 }
 
+// Entries of a row that it sees, then mu: its layers, whose activation is pi's, and the ranges that mu and pi read.
+void write_latent(Writer& out, const PolicyView& v) {
+  const LatentShape& l = v.latent;
+  out.begin_section("LATN");
+  out.value(l.entries);
+  out.value(l.mlp.out);
+  out.value(l.mlp.num_hidden);
+  for (int32_t k = 0; k < kMaxHidden; ++k) out.value(k < l.mlp.num_hidden ? l.mlp.hidden[k] : int32_t{0});
+  write_ranges(out, l.columns, l.mlp.in);
+  write_ranges(out, l.own, l.num_own);
+  out.end_section();
+}
+
 void write_columns(Writer& out, const PolicyView& v) {
   out.begin_section("COLS");
   out.value(v.row_dim);
@@ -392,6 +426,9 @@ struct PolicyParts {
   const unsigned char *field_entries = nullptr, *field_texts = nullptr;
   size_t field_bytes = 0;  // of the texts
   const unsigned char* history_entries = nullptr;
+  const unsigned char *latent_ranges = nullptr, *own_ranges = nullptr;  // of a latent
+  int32_t num_latent_ranges = 0, num_own_ranges = 0;
+  const unsigned char* latent = nullptr;
   const unsigned char *params = nullptr, *eyes = nullptr, *log_std = nullptr, *shift = nullptr,
                       *scale = nullptr;
   const unsigned char *obs = nullptr, *action = nullptr, *points = nullptr, *classes = nullptr,
@@ -504,10 +541,12 @@ void read_memory(Reader& in, PolicyParts& parts) {
   const auto units = in.value<int32_t>();
   v.history = in.value<int32_t>();
   v.history_width = in.value<int32_t>();
+  if (units > 0 && v.latent) bad("it has a latent and a memory of units");
   if (units < 0 || units > kMaxUnits) bad("the number of units of its memory is out of range");
   if (v.history < 1 || v.history > kMaxHistory) bad("the length of its history is out of range");
   if ((v.history == 1) != (v.history_width == 0) || v.history_width < 0 ||
-      int64_t{v.history - 1} * v.history_width >= v.actor.in || v.history_width > v.entries())
+      int64_t{v.history - 1} * v.history_width >= (v.latent ? kMaxInputs : v.actor.in) ||
+      v.history_width > v.entries())
     bad("the entries of its history are out of range");
   if (units == 0 && v.history == 1) bad("its memory is empty");
   v.gru = with_gru(v.actor, units).gru;
@@ -521,16 +560,57 @@ void read_memory(Reader& in, PolicyParts& parts) {
   }
 }
 
+// Before the memory, whose entries it counts.
+void read_latent(Reader& in, PolicyParts& parts) {
+  PolicyView& v = parts.v;
+  LatentShape& l = v.latent;
+  in.need_section("LATN");
+  l.entries = in.value<int32_t>();
+  l.mlp.out = in.value<int32_t>();
+  l.mlp.activation = v.actor.activation;
+  l.mlp.num_hidden = in.value<int32_t>();
+  for (int32_t& h : l.mlp.hidden) h = in.value<int32_t>();
+  if (l.entries < 1 || l.entries > kMaxInputs) bad("the observation's size is out of range");
+  if (l.mlp.out < 1 || l.mlp.out > kMaxLatent) bad("the size of its latent is out of range");
+  parts.latent_ranges = view_ranges(in, kMaxInputs, kMaxInputs, &parts.num_latent_ranges);
+  parts.own_ranges = view_ranges(in, kMaxInputs, kMaxInputs, &parts.num_own_ranges);
+  in.expect_end();
+  l.mlp.in = count_ranges(parts.latent_ranges, parts.num_latent_ranges);
+  l.num_own = count_ranges(parts.own_ranges, parts.num_own_ranges);
+  try {
+    check_mlp_shape(l.mlp);
+  } catch (const Error& e) {
+    bad(e.text);
+  }
+  for (int32_t k = l.mlp.num_hidden; k < kMaxHidden; ++k)
+    if (l.mlp.hidden[k] != 0) bad("a layer that does not exist has a width");
+  if (l.num_own + l.mlp.out != v.actor.in) bad("the network's inputs are not its entries and its latent");
+}
+
+// Once the history is known, which both may read.
+void check_latent(const PolicyParts& parts) {
+  const PolicyView& v = parts.v;
+  const auto last = [](const unsigned char* ranges, int32_t count) {
+    return pair_of(ranges, count - 1).second;
+  };
+  const int32_t width = v.entries() + v.history_inputs();
+  if (last(parts.latent_ranges, parts.num_latent_ranges) > width ||
+      last(parts.own_ranges, parts.num_own_ranges) > v.entries())
+    bad("its latent reads entries that are not there");
+}
+
 void read_parts(const void* bytes, size_t size, PolicyParts& parts) {
   PolicyView& v = parts.v;
   Reader in(bytes, size, kWhat);
   const uint32_t version = in.begin_file(kPolicyMagic, kPolicyVersion);
-  in.need_whole_tags("METAARCHHEADEYESMEMOSQSHCOLSGRPSWGTSNORMEXMP");
+  in.need_whole_tags("METAARCHHEADEYESLATNMEMOSQSHCOLSGRPSWGTSNORMEXMP");
   read_meta(in, v);
   read_arch(in, v.actor);
   if (version > 1) read_head(in, v);
   if (version == 4 || version == 5) read_eyes(in, v, version == 5);
-  if (version == 7 || version == 9) read_memory(in, parts);
+  if (version == 10) read_latent(in, parts);
+  if (version == 7 || version == 9 || (version == 10 && in.find_section("MEMO"))) read_memory(in, parts);
+  if (version == 10) check_latent(parts);
   if (version == 8) read_squash(in, v);
   v.row_dim = v.entries();
   if (version == 3 || (version > 3 && in.find_section("COLS"))) read_columns(in, parts);
@@ -545,6 +625,7 @@ void read_parts(const void* bytes, size_t size, PolicyParts& parts) {
   in.need_section("WGTS");
   parts.params = view_floats(in, v.num_params());
   parts.eyes = view_floats(in, v.eyes.num_params());
+  parts.latent = view_floats(in, v.latent.num_params());
   parts.log_std = view_floats(in, v.state_std ? 0 : sz(v.action_dim()));
   in.expect_end();
   in.need_section("NORM");
@@ -627,6 +708,9 @@ Kept keep_parts(Arena& arena, const PolicyParts& parts) {
   v.params = keep<float>(arena, parts.params, v.num_params());
   v.history_entries = keep<int32_t>(arena, parts.history_entries, sz(v.history_width));
   v.eyes_params = keep<float>(arena, parts.eyes, v.eyes.num_params());
+  v.latent_params = keep<float>(arena, parts.latent, v.latent.num_params());
+  v.latent.columns = keep_columns(arena, parts.latent_ranges, parts.num_latent_ranges, v.latent.mlp.in);
+  v.latent.own = keep_columns(arena, parts.own_ranges, parts.num_own_ranges, v.latent.num_own);
   v.example_points = keep<int16_t>(arena, parts.points, v.eyes.row_points());
   v.example_classes = keep<uint8_t>(arena, parts.classes, v.eyes.classes ? sz(v.eyes.points) : 0);
   v.example_colors = keep<uint8_t>(arena, parts.colors, v.eyes.color ? v.eyes.row_points() : 0);
@@ -693,7 +777,8 @@ void write_policy(Writer& out, const PolicyView& view) {
     act_example(view, obs.data(), cloud, action.data(), align_scratch(memory.data()), state.data());
   }
   const bool remembers = view.state_dim() > 0;
-  out.begin_file(kPolicyMagic, view.squash != Squash::kNone   ? 8
+  out.begin_file(kPolicyMagic, view.latent                    ? 10
+                               : view.squash != Squash::kNone ? 8
                                : remembers && view.num_groups ? 9
                                : remembers                    ? 7
                                : view.num_groups              ? 6
@@ -728,6 +813,7 @@ void write_policy(Writer& out, const PolicyView& view) {
     out.end_section();
   }
   if (eyes.points) write_eyes(out, view);
+  if (view.latent) write_latent(out, view);
   if (remembers) write_memory(out, view);
   if (view.columns) write_columns(out, view);
   if (view.num_groups) write_groups(out, view);
@@ -741,6 +827,7 @@ void write_policy(Writer& out, const PolicyView& view) {
   out.begin_section("WGTS");
   write_floats(out, view.params, view.num_params());
   write_floats(out, view.eyes_params, eyes.num_params());
+  write_floats(out, view.latent_params, view.latent.num_params());
   if (!view.state_std) write_floats(out, view.log_std, n_out);
   out.end_section();
   out.begin_section("NORM");
@@ -825,6 +912,7 @@ void Policy::update(const PolicyView& from) {
   const size_t n_norm = v.clip > 0 ? sz(v.entries()) : 0;
   const Part parts[] = {{from.params, v.params, v.num_params()},
                         {from.eyes_params, v.eyes_params, v.eyes.num_params()},
+                        {from.latent_params, v.latent_params, v.latent.num_params()},
                         {from.log_std, v.log_std, v.state_std ? 0 : n_out},
                         {from.shift, v.shift, n_norm},
                         {from.scale, v.scale, n_norm},

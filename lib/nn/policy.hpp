@@ -2,8 +2,8 @@
 // Serialised form: the policy.rdm file (base/bytes.hpp), magic "RDMPOLIC". Version 2 is written for a policy
 // whose deviation depends on the state, version 3 for one that sees a part of the observation alone, version
 // 4 for one that sees points, version 5 for one that sees their colours, version 6 for one in groups, version 7 for one
-// that has a memory, version 8 for one whose actions are squashed, version 9 for one in groups that have memories:
-// versions before do not know these.
+// that has a memory, version 8 for one whose actions are squashed, version 9 for one in groups that have memories,
+// version 10 for one with a latent: versions before do not know these.
 // Sections FLDS, the names of fields, GENR, the generation, and SEEN, what is usual in a row, came later and
 // are in files of each version: a reader finds sections by their tags, and passes over others.
 #pragma once
@@ -13,6 +13,7 @@
 #include "base/file.hpp"
 #include "nn/actor_group.hpp"
 #include "nn/gru.hpp"
+#include "nn/latent.hpp"
 #include "nn/novelty.hpp"
 #include "nn/obs_field.hpp"
 #include "nn/pointnet.hpp"
@@ -21,7 +22,7 @@
 namespace rdm {
 
 inline constexpr char kPolicyMagic[8] = {'R', 'D', 'M', 'P', 'O', 'L', 'I', 'C'};
-inline constexpr uint32_t kPolicyVersion = 9;
+inline constexpr uint32_t kPolicyVersion = 10;
 inline constexpr int32_t kMaxHistory = 1024;
 
 // Everything that a policy file holds, as views of memory that somebody else owns.
@@ -41,13 +42,16 @@ struct PolicyView {
   int32_t history_width = 0;
   PointNetShape eyes;                  // points 0: none; their features are the actor's last inputs
   const float* eyes_params = nullptr;  // [eyes.num_params()]
-  const int32_t* columns = nullptr;    // [entries()] entries of the row, ascending; null: all of them
-  int32_t row_dim = 0;                 // entries of a row; of no use without columns
-  const float* params = nullptr;       // [num_params()]
-  const float* log_std = nullptr;      // [action_dim], null with state_std
-  bool state_std = false;              // the network gives the log deviations
-  float std_bounds[2] = {};            // lowest and highest of these
-  Squash squash = Squash::kNone;       // what makes actions of the outputs
+  // mu and pi, of which `actor` is pi's: its last inputs are z. Their columns are of the entries with the history.
+  LatentShape latent;                    // none without numbers
+  const float* latent_params = nullptr;  // [latent.num_params()]
+  const int32_t* columns = nullptr;      // [entries()] entries of the row, ascending; null: all of them
+  int32_t row_dim = 0;                   // entries of a row; of no use without columns
+  const float* params = nullptr;         // [num_params()]
+  const float* log_std = nullptr;        // [action_dim], null with state_std
+  bool state_std = false;                // the network gives the log deviations
+  float std_bounds[2] = {};              // lowest and highest of these
+  Squash squash = Squash::kNone;         // what makes actions of the outputs
   const float* shift = nullptr;        // [entries()] observation normaliser: clip((x - shift) scale, +-clip)
   const float* scale = nullptr;        // [entries()]
   float clip = 0;                      // 0: no normaliser
@@ -72,7 +76,7 @@ struct PolicyView {
   int32_t history_inputs() const { return (history - 1) * history_width; }
   int32_t state_dim() const { return gru.units * std::max(num_groups, 1) + history_inputs(); }
   // of a row, that it sees
-  int32_t entries() const { return actor.in - eyes.features() - history_inputs(); }
+  int32_t entries() const { return latent ? latent.entries : actor.in - eyes.features() - history_inputs(); }
   int32_t obs_dim() const { return columns ? row_dim : entries(); }
   int32_t action_dim() const { return state_std ? actor.out / 2 : actor.out; }
 };

@@ -36,6 +36,11 @@ policy bounded --task ball_run --algo td3_lag --set hidden=16,16 --set start_ste
 policy gru --set memory=gru:13 --set hidden=16
 policy team_gru --algo mappo --set memory=gru:5 --set hidden=16
 policy past --set history=4 --set hidden=16 --set 'history_fields=object.*'
+drawn='--set scale.kp=0.8..1.2 --set show_dynamics=true --set latent=3 --set latent_hidden=9 --set hidden=16'
+# shellcheck disable=SC2086
+policy latent $drawn
+# shellcheck disable=SC2086
+policy student $drawn --set latent_from=history --set history=4 --set 'history_fields=*.joint_position,object.*' --set std_mode=state
 cloud='--set encoder_points=32 --set cloud_width=24 --set cloud_height=24'
 # shellcheck disable=SC2086
 policy eyes --set encoder=16,24 --set actor_obs=vision --set hidden=16,16 $cloud

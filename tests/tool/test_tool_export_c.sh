@@ -61,13 +61,14 @@ check() {
     fi
     status "$file" 0 "$file"
     # any number that is changed is noticed, and a policy that takes what is no number
-    for table in weight_0 $(case $name in bare*_gru) echo weight_input bias_state ;; *) echo bias_1 ;; esac) $(case $eyes in *EYES*) echo weight_eye_0 origin ;; esac) ${shield:+low high}; do
+    for table in weight_0 $(case $name in bare*_gru) echo weight_input bias_state ;; bare_student) echo weight_latent_0 bias_latent_0 ;; *student | latent) echo bias_1 weight_latent_1 ;; *) echo bias_1 ;; esac) $(case $eyes in *EYES*) echo weight_eye_0 origin ;; esac) ${shield:+low high}; do
       awk -v table="_$table[" '{ if (on) { sub(/^  -?/, "&1"); on = 0 } if (index($0, table) && /^static const/) on = 1; print }' \
         "$file" > changed.c
       cmp -s "$file" changed.c && say "$file: nothing was changed in $table"
       status changed.c 2 "$file, $table changed"
     done
     case $name in
+      bare_student) ;;  # a linear network gives no number of what is none
       squashed | bounded) grep -q "tanh of the network's mean" "$file" || say "$file: it does not say what it gives" ;;  # what is no number goes through a tanh
       *)
         sed 's/fault += obs.*/;/; s/fault += action.*/;/' "$file" > changed.c
@@ -138,12 +139,20 @@ check team_gru --algo mappo --set memory=gru:5 --set hidden=16
 check bare_team_gru --algo mappo --set memory=gru:4 --set hidden= --set std_mode=state
 check past --set history=4 --set hidden=16
 check some --set history=3 --set 'history_fields=object.*' --set 'actor_obs=proprioception,object.*' --set hidden=16
-for name in gru past; do
+drawn='--set scale.kp=0.8..1.2 --set show_dynamics=true --set latent=3'
+# shellcheck disable=SC2086
+check student $drawn --set latent_from=history --set history=4 --set 'history_fields=*.joint_position,object.*' --set hidden=16 --set latent_hidden=9,8
+# shellcheck disable=SC2086
+check bare_student $drawn --set latent_from=history --set history=2 --set hidden= --set latent_hidden= --set normalize_obs=false
+eyes=
+# shellcheck disable=SC2086
+check latent $drawn --set hidden=16,17 --set latent_hidden=9
+for name in gru past student; do
   sed 's/state\[i\] = next\[i\]/state[i] = state[i]/' $name.c > changed.c
   status changed.c 1 "$name without its memory"
 done
 eyes=
-[ $checked -eq 20 ] || say "$checked policies"
+[ $checked -eq 23 ] || say "$checked policies"
 
 # several policies in one program, by one file or by several
 printf '#include "%s"\n#include "%s"\n#include "%s"\n#include "%s"\nint main(void) { return 0; }\n' tanh.c elu_8.c elu_8.c kinds.c > both.c

@@ -4,7 +4,7 @@ from __future__ import annotations
 import copy
 import os
 from dataclasses import dataclass, field
-from typing import Any, Mapping, Optional, Union
+from typing import Any, Mapping, Optional, Sequence, Union
 
 from . import _discovery
 from ._agent import Agent
@@ -24,6 +24,8 @@ _POLICY_SAMPLES = 100_000.0  # that a policy's statistics of observations count 
 _TAUGHT: tuple[tuple[str, Value], ...] = (
     ("std_min", "0.01"), ("init_std", "0.03"), ("learning_rate", "1e-9"), ("critic_learning_rate", "1e-3"),
     ("lr_schedule", "kl"), ("kl_target", "0.02"), ("lr_min", "1e-9"), ("warm_epochs", "10"), ("obs_freeze", "1"))
+# Of a student, all of which but an encoder stays as it was taught (latent_from=history).
+_ADAPTING: tuple[tuple[str, Value], ...] = (("std_min", "0.01"), ("learning_rate", "1e-3"), ("lr_schedule", "linear"))
 _SETTINGS: dict[str, Any] = {
     "decisions": 640, "noise": 0.05, "success_only": False, "clone_epochs": 20, "clone_patience": 0, "clone_rate": 1e-3,
     "validation": 0.1, "pretrain": 0, "pretrain_epochs": 10, "dagger": 0, "beta": 0.5, "start_share": 0.0,
@@ -131,8 +133,8 @@ class Teach:
             out += eyes(info.num_points, info.action_repeat, "true" if info.point_color else "false")
         return out
 
-    def algo_options(self) -> tuple[tuple[str, Value], ...]:
-        return _TAUGHT
+    def algo_options(self, given: Sequence[tuple[str, Value]]) -> tuple[tuple[str, Value], ...]:
+        return _ADAPTING if dict(given).get("latent_from") == "history" else _TAUGHT
 
     def apply(self, agent: Agent, pool: Pool, seed: int) -> None:
         """Gives the agent what it learns by imitation, and the worlds their starts."""

@@ -301,7 +301,7 @@ def _wanted(given: Mapping[str, Any]) -> Settings:
     of_task = list(named_options(dict(of_task)).items())
     if teach is not None and not teach.acts:
         of_task = [*teach.task_options(name), *of_task]
-        of_algo = [*teach.algo_options(), *of_algo]
+        of_algo = [*teach.algo_options(of_algo), *of_algo]
     if teach is None or not teach.acts:  # the command adds these itself
         of_task = [*eyes_of(name, algo, {folded(key): value for key, value in of_algo}), *of_task]
     own = Own.wanted(given["reward"], given["costs"])

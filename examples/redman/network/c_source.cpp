@@ -87,12 +87,14 @@ struct Layers {
   std::vector<Layer> actor;  // for the mean action: where the last one has deviations too, its first half
   std::vector<Layer> eyes;
   std::vector<Layer> memory;  // of a GRU: what the input gives, what the state gives
+  std::vector<Layer> latent;  // its encoder
 };
 Layers layers_of(const Network& network, bool int8) {
   const Eyes& e = network.eyes;
   Layers out = {layers_of(network, "actor", "", network.num_layers, network.action_dim, int8),
                 layers_of(network, "encoder", "eye_", e.num_layers, e.features, int8),
-                {}};
+                {},
+                layers_of(network, "latent", "latent_", network.latent_layers, network.latent, int8)};
   for (const char* part : {"input", "state"})
     if (network.memory.units)
       out.memory.push_back(
@@ -199,7 +201,13 @@ std::vector<float> run_layers(const Network& network, const Layers& layers, cons
   }
   const Memory& memory = network.memory;
   if (memory.size && row % kProbeEpisode == 0) state.assign(static_cast<size_t>(memory.size), 0);
+  std::vector<float> own = x;
   if (memory.size && !memory.units) run_history(memory, x, state);
+  if (network.latent) {
+    run_all(layers.latent, network.activation, x);
+    own.insert(own.end(), x.begin(), x.begin() + network.latent);
+    x = own;
+  }
   if (memory.units)
     run_gru(network, layers, x, state);
   else
@@ -433,7 +441,8 @@ bool own_activation(const Network& network, const Layers& layers) {
   return network.eyes.points && (network.eyes.activation != network.activation || layers.actor.size() == 1);
 }
 std::string activations_text(const Network& network, const Layers& layers) {
-  const bool actor = layers.actor.size() > 1, eyes = own_activation(network, layers);
+  const bool actor = layers.actor.size() > 1 || layers.latent.size() > 1,
+             eyes = own_activation(network, layers);
   std::string out;
   if (network.memory.units || squashes(network) || (actor && network.activation != "relu") ||
       (eyes && network.eyes.activation != "relu"))
@@ -466,15 +475,37 @@ std::string layer_call(const Layer& y, bool int8, const char* in, const char* ou
                 scale.c_str(), y.number.c_str(), in, y.in, y.out, out);
 }
 
+// The row's copy with its latent behind it becomes what the actor reads.
+std::string latent_text(const Network& network, const Layers& layers, bool int8) {
+  if (!network.latent) return "";
+  return std::string(kKeepRow) + layer_calls(layers.latent, int8, "  ", "NAME_activate") +
+         replaced(replaced(kPutLatent, "LATENT", std::to_string(network.latent)), "LAST",
+                  last_row(layers.latent));
+}
+
+// The layers that share the two buffers, for their sizes: the row, with what stands behind it, fits the first.
+std::vector<Layer> shared_rows(const Network& network, const Layers& layers) {
+  std::vector<Layer> rows = layers.actor;
+  if (network.latent) {
+    const Sizes l = buffer_sizes(layers.latent);
+    rows[0].in = std::max(rows[0].in, l.front);
+    rows[0].out = std::max(rows[0].out, l.back);
+  }
+  if (network.memory.size) rows[0].in = std::max(rows[0].in, static_cast<size_t>(network.obs_dim));
+  return rows;
+}
+std::string latent_rows(const Network& network) {
+  return network.latent ? format(", row[NAME_obs_dim], latent[%d]", network.latent) : "";
+}
+
 std::string memory_text(const Network& network, const Layers& layers, bool int8) {
   const Memory& m = network.memory;
   const char* normalise = network.find("normalizer.clip") ? kNormalise : kTake;
-  std::vector<Layer> rows = layers.actor;  // the first buffer has the row too
-  rows[0].in = std::max(rows[0].in, static_cast<size_t>(network.obs_dim));
-  std::string out = replaced(with_rows(kActStateHead, rows), "DECLARATION", call_of(network).declaration);
+  std::string out = replaced(with_rows(kActStateHead, shared_rows(network, layers)), "DECLARATION",
+                             call_of(network).declaration);
   if (!m.units) {
-    out = replaced(out, "GATES", "") + kRow + normalise +
-          replaced(kHistory, "KEPT", std::to_string(m.columns.size()));
+    out = replaced(out, "GATES", latent_rows(network)) + kRow + normalise +
+          replaced(kHistory, "KEPT", std::to_string(m.columns.size())) + latent_text(network, layers, int8);
     out += layer_calls(layers.actor, int8, "  ", "NAME_activate");
     return out + replaced(kActTail, "LAST", last_row(layers.actor)) + kKeepState + "}\n";
   }
@@ -493,10 +524,12 @@ std::string memory_text(const Network& network, const Layers& layers, bool int8)
 
 std::string act_text(const Network& network, const Layers& layers, bool int8) {
   if (network.memory.size) return memory_text(network, layers, int8);
-  std::string out =
-      network.eyes.points ? eyes_text(network, layers, int8) : with_rows(kActHead, layers.actor);
+  std::string out = network.eyes.points ? eyes_text(network, layers, int8)
+                                        : replaced(with_rows(kActHead, shared_rows(network, layers)),
+                                                   "LATENT_ROWS", latent_rows(network));
   out += kRow;
   out += network.find("normalizer.clip") ? kNormalise : kTake;
+  out += latent_text(network, layers, int8);
   out += layer_calls(layers.actor, int8, "  ", "NAME_activate");
   return out + replaced(kActTail, "LAST", last_row(layers.actor)) + "}\n";
 }
@@ -570,6 +603,7 @@ std::string head_text(const Network& network, const std::vector<Layer>& layers,
              e.activation;
   if (e.points) shape += format(", the largest of all; %d beside ", e.features);
   shape += std::to_string(network.obs_dim);
+  if (network.latent) shape += format(" with a latent of %d", network.latent);
   for (size_t l = 0; l + 1 < layers.size(); ++l)
     shape += " -> " + std::to_string(network.find("actor." + layers[l].number + ".bias")->shape[0]) + ' ' +
              network.activation;
@@ -599,11 +633,13 @@ size_t widest_of(const Layers& layers) {
   size_t widest =
       std::max(buffer_sizes(layers.actor).widest, layers.eyes.empty() ? 0 : buffer_sizes(layers.eyes).widest);
   for (const Layer& layer : layers.memory) widest = std::max(widest, layer.in);
+  for (const Layer& layer : layers.latent) widest = std::max(widest, layer.in);
   return widest;
 }
 size_t stack_bytes(const Network& network, const Layers& layers, bool int8) {
-  const Sizes s = buffer_sizes(layers.actor);
+  const Sizes s = buffer_sizes(shared_rows(network, layers));
   size_t floats = s.front + s.back;
+  if (network.latent) floats += static_cast<size_t>(network.obs_dim + network.latent);
   if (!layers.eyes.empty()) {
     const Sizes e = buffer_sizes(layers.eyes);
     floats += e.front + e.back + static_cast<size_t>(network.eyes.features);
@@ -677,7 +713,7 @@ CSource c_source(const redman::Policy& policy, const Network& network, const std
   const bool held = !bounds.low.empty();
   if (held) tables.add("low", bounds.low), tables.add("high", bounds.high);
   if (eyes.points) tables.add("origin", std::vector<float>(eyes.origin, eyes.origin + 3));
-  for (const auto* part : {&layers.actor, &layers.eyes, &layers.memory})
+  for (const auto* part : {&layers.actor, &layers.eyes, &layers.memory, &layers.latent})
     for (const Layer& layer : *part) {
       if (int8)
         tables.add("weight_" + layer.number, layer.small), tables.add("scale_" + layer.number, layer.scale);

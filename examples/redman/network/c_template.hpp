@@ -189,9 +189,18 @@ static void NAME_layer(const int8_t *weight, const float *scale, const float *bi
 
 inline constexpr const char* kActHead = R"(
 void NAME_act(const float *obs, float *action) {
-  float front[FRONT], back[BACK];
+  float front[FRONT], back[BACK]LATENT_ROWS;
   float fault = 0.0f; /* NaN once something is not finite */
   int i;
+)";
+
+// ---- latent -----------------------------------------------------------------------------------------------
+inline constexpr const char* kKeepRow = R"(  for (i = 0; i < NAME_obs_dim; ++i) row[i] = front[i];
+)";
+// Behind the encoder's calls.
+inline constexpr const char* kPutLatent = R"(  for (i = 0; i < LATENT; ++i) latent[i] = LAST[i];
+  for (i = 0; i < NAME_obs_dim; ++i) front[i] = row[i];
+  for (i = 0; i < LATENT; ++i) front[NAME_obs_dim + i] = latent[i];
 )";
 
 // ---- memory -----------------------------------------------------------------------------------------------

@@ -68,6 +68,8 @@ Network::Network(const redman::Policy& policy) {
     const bool weight = tensor.name.find(".weight") != std::string::npos;
     if (weight || t.cols > 1) tensor.shape.push_back(t.cols);
     num_layers += weight && tensor.name.starts_with("actor.");
+    latent_layers += weight && tensor.name.starts_with("latent.");
+    if (tensor.name.starts_with("latent.")) latent = static_cast<int32_t>(tensor.shape[0]);
     tensors.push_back(std::move(tensor));
   }
   const uint32_t v = rdm_version();
@@ -83,6 +85,7 @@ Network::Network(const redman::Policy& policy) {
               {"library", format("redman %u.%u.%u", v / 1000000, v / 1000 % 1000, v % 1000)},
               {"example_obs", join(find("example.obs"))},
               {"example_action", join(find("example.action"))}};
+  if (latent) metadata.push_back({"latent", std::to_string(latent)});
   read_eyes(*this, info);
   read_memory(*this, info);
 }

@@ -39,6 +39,9 @@ struct Network {
   int32_t obs_dim = 0, action_dim = 0, num_layers = 0;
   Eyes eyes;
   Memory memory;
+  // Numbers that the layers latent.0 and on make of the row, and of the history behind it, for the actor, whose layers
+  // read the row with these behind it; 0: there are none.
+  int32_t latent = 0, latent_layers = 0;
   std::vector<NamedTensor> tensors;  // as rdm_policy_tensor_at names them
   // What a reader has to know beside the numbers: task, layout hash, rates, bounds of the action, entries of
   // a row that count.

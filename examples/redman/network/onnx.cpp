@@ -257,6 +257,20 @@ std::string add_history(const Memory& memory, Graph& graph, const std::string& x
   return graph.node("Concat", {x, "state"}, "seen", {{"axis", 1}});
 }
 
+// The row with its latent behind it, of what the encoder sees.
+std::string add_latent(const Network& network, Graph& graph, const std::string& row, std::string x) {
+  for (int32_t l = 0; l < network.latent_layers; ++l) {
+    const std::string layer = "latent." + std::to_string(l);
+    x = graph.node(
+        "Gemm",
+        {x, graph.constant(*network.find(layer + ".weight")), graph.constant(*network.find(layer + ".bias"))},
+        layer, {{"transB", 1}});
+    if (l + 1 < network.latent_layers)
+      x = graph.node(activation_operator(network.activation).c_str(), {x}, layer + ".out");
+  }
+  return graph.node("Concat", {row, x}, "with_latent", {{"axis", 1}});
+}
+
 }  // namespace
 
 std::string onnx_bytes(const Network& network) {
@@ -267,7 +281,9 @@ std::string onnx_bytes(const Network& network) {
   add_eyes(network, graph, x);
   const Memory& memory = network.memory;
   if (memory.size) graph.input("state", {kBatch, memory.size});
+  const std::string row = x;
   if (memory.size && !memory.units) x = add_history(memory, graph, x);
+  if (network.latent) x = add_latent(network, graph, row, x);
   const NamedTensor *log_std = network.find("actor.log_std"), *bounds = network.find("actor.log_std_bounds");
   const bool squash = network.find("action.squash") != nullptr;
   for (int32_t l = 0; l < network.num_layers; ++l) {

@@ -190,8 +190,12 @@ void load_policy(const std::string& file, const redman::Pool& pool, redman::Agen
 
 }  // namespace
 
-Options taught_options(const TeachSettings& s) {
+Options taught_options(const TeachSettings& s, const Options& given) {
   if (!s.asked()) return {};
+  const bool student = std::any_of(given.begin(), given.end(), [](const auto& option) {
+    return same_name(option.first, "latent_from") && option.second == "history";
+  });
+  if (student) return {{"std_min", "0.01"}, {"learning_rate", "1e-3"}, {"lr_schedule", "linear"}};
   return {{"std_min", "0.01"},       {"init_std", "0.03"},
           {"learning_rate", "1e-9"}, {"critic_learning_rate", "1e-3"},
           {"lr_schedule", "kl"},     {"kl_target", "0.02"},

@@ -24,7 +24,7 @@ struct Taught {
 
 // Options of the algorithm that keep what was taught: small deviations, critics first, an actor's rate that
 // climbs from next to nothing. To be laid under the user's own.
-Options taught_options(const TeachSettings& settings);
+Options taught_options(const TeachSettings& settings, const Options& given);
 
 // What a demonstration says of how it is learned from (lines `teach` and `learn` of its script): its
 // settings, but for those that `given` names, and options of the algorithm, to be laid under the user's own.
