@@ -1,6 +1,6 @@
 // Each algorithm for one agent on three worlds with a known optimum, five seeds: return within 2 % of the
 // constrained optimum and cost within 2 % of its limit or below in every seed (PPO and TRPO: the optimum
-// without a limit). CLOSED_FORM_ALGO=name runs one alone.
+// without a limit). Learners from a replay memory: by the mean action. CLOSED_FORM_ALGO=name runs one alone.
 #include <algorithm>
 #include <iterator>
 #include <sstream>
@@ -12,7 +12,7 @@ using namespace rdm::test;
 
 namespace {
 
-constexpr double kBound = 0.02;
+constexpr double kWithin = 0.02;
 
 struct Key {
   const char *key, *text;
@@ -78,23 +78,24 @@ Judged learn(const char* algo, uint64_t seed, const Settings& settings, const ch
   return learn_world<World>(s, std::atoi(epochs));
 }
 
-template <class World>
-void run(const char* world, const char* epochs, const Settings& settings) {
+// Judges five seeds of each of `algos`, and says how far they are from the optimum; learn(algo, seed).
+template <class World, class Algos, class Learn>
+void judge(const char* world, const Algos& algos, double free, Learn&& learn) {
   const char* only = std::getenv("CLOSED_FORM_ALGO");
-  for (const char* algo : kAlgos) {
+  for (const char* algo : algos) {
     if (only && std::strcmp(only, algo) != 0) continue;
     const bool limited = !lists(kFree, algo);
-    const double best = limited ? World::kBest : World::kFree;
+    const double best = limited ? World::kBest : free;
     double worst_ret = -1e9, worst_cost = -1e9, mean_ret = 0, mean_cost = 0;
     for (uint64_t seed = 1; seed <= 5; ++seed) {
-      const Judged j = learn<World>(algo, seed, settings, epochs);
+      const Judged j = learn(algo, seed);
       const double off = (best - j.ret) / std::abs(best), over = (j.cost - World::kLimit) / World::kLimit;
       worst_ret = std::max(worst_ret, off);
       worst_cost = std::max(worst_cost, over);
       mean_ret += j.ret / 5, mean_cost += j.cost / 5;
-      EXPECT_LT(off, kBound) << algo << "seed" << seed << ": return " << j.ret;
+      EXPECT_LT(off, kWithin) << algo << "seed" << seed << ": return " << j.ret;
       if (limited) {
-        EXPECT_LT(over, kBound) << algo << "seed" << seed << ": cost " << j.cost;
+        EXPECT_LT(over, kWithin) << algo << "seed" << seed << ": cost " << j.cost;
       }
     }
     std::printf("%-10s %-9s return %9.4f (best %9.4f, worst seed %5.2f %% below) cost %7.4f", world, algo,
@@ -103,6 +104,54 @@ void run(const char* world, const char* epochs, const Settings& settings) {
     std::printf("\n");
     std::fflush(stdout);
   }
+}
+
+template <class World>
+void run(const char* world, const char* epochs, const Settings& settings) {
+  judge<World>(world, kAlgos, World::kFree,
+               [&](const char* algo, uint64_t seed) { return learn<World>(algo, seed, settings, epochs); });
+}
+
+// Learners from a replay memory: 50 worlds, an epoch of 20 decisions each, 100 gradient steps after it. Their actions have
+// noise of kNoise while they collect, of which the limit that they are told has its part.
+template <class World>
+void run_off_policy(const char* world, int epochs, const std::vector<Key>& multipliers) {
+  constexpr const char* kOffPolicy[] = {"td3_lag", "td3_pid", "sac_lag", "sac_pid"};
+  constexpr double kNoise = 0.05;
+  static constexpr Key kShared[] = {{"hidden", ""},
+                                    {"critic_hidden", "32,32"},
+                                    {"activation", "elu"},
+                                    {"horizon", "20"},
+                                    {"normalize_obs", "false"},
+                                    {"start_steps", "2000"},
+                                    {"batch_rows", "256"},
+                                    {"updates_per_step", "0.1"},
+                                    {"replay_rows", "20000"},
+                                    {"learning_rate", "3e-4"},
+                                    {"critic_learning_rate", "1e-3"},
+                                    {"tau", "0.02"},
+                                    {"discount", "0.9"},
+                                    {"explore_std", "0.05"},
+                                    {"target_std", "0.05"},
+                                    {"init_std", "0.05"},
+                                    {"std_min", "0.0499"},
+                                    {"std_max", "0.0501"},
+                                    {"temperature", "0"},
+                                    {"temperature_learning_rate", "0"},
+                                    {"multiplier_optimizer", "sgd"},
+                                    {"multiplier_init", "0"},
+                                    {"pid_init", "0"},
+                                    {"pid_kd", "0"},
+                                    {"pid_smooth_p", "0"}};
+  judge<World>(world, kOffPolicy, World::kBest, [&](const char* algo, uint64_t seed) {
+    AgentSetup s(algo, World::kObs, 1, 50);
+    s.config.seed = seed;
+    const std::string limit = std::to_string(World::limit(kNoise * static_cast<double>(kBound)));
+    s.with("cost_limit", limit.c_str());
+    for (const Key& k : kShared) s.with_known(k.key, k.text);
+    for (const Key& k : multipliers) s.with_known(k.key, k.text);
+    return learn_world<World>(s, epochs, kBound);
+  });
 }
 
 }  // namespace
@@ -161,4 +210,27 @@ TEST(ClosedForm, LqrLine) {
                            {"focops", {{"temperature", "0.2"}}},
                            {"p3o", {{"penalty", "1"}, {"minibatches", "2"}, {"multiplier_window", "3000"}}},
                            {"ipo", {{"multiplier_window", "3000"}}}})));
+}
+
+// Linear policies and smooth critics of two hidden layers; the noise of SAC's policies is held where TD3's is.
+TEST(ClosedForm, OffPolicyBandit) {
+  run_off_policy<BoundedBandit>("bandit", 300,
+                                {{"multiplier_window", "200"},
+                                 {"multiplier_lr", "0.2"},
+                                 {"multiplier_gain", "0.5"},
+                                 {"pid_ki", "0.2"},
+                                 {"pid_kp", "0.5"}});
+}
+
+// Uniform actions at the beginning cost a hundred times the limit: the multipliers are bounded, so that their integral
+// comes down again.
+TEST(ClosedForm, OffPolicyLqrLine) {
+  run_off_policy<BoundedLqr>("lqr_line", 600,
+                             {{"multiplier_window", "1000"},
+                              {"multiplier_lr", "0.01"},
+                              {"multiplier_gain", "0.3"},
+                              {"multiplier_max", "0.6"},
+                              {"pid_ki", "0.01"},
+                              {"pid_kp", "0.3"},
+                              {"pid_max", "0.6"}});
 }

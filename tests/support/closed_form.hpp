@@ -148,9 +148,81 @@ class LqrWorld {
   Stream stream_;
 };
 
-// Trains and judges. env count 50.
+// The first and the last of them for policies whose actions are bounded, and whose mean alone is judged, as of learners
+// from a replay memory: actions are 3 times the policy's. limit(noise): of costs while actions have a noise of that
+// deviation, so that the mean keeps kLimit.
+inline constexpr float kBound = 3;
+
+class BoundedBandit {
+ public:
+  static constexpr int kObs = 1;
+  static constexpr double kLimit = 1, kBest = -1;
+  BoundedBandit(size_t envs, uint64_t seed) : world_(envs, seed) {}
+  void start(float* obs) { world_.start(obs); }
+  void step(const float* action, float* reward, float* cost, uint8_t* over, uint8_t*, float* obs) {
+    world_.step(action, reward, cost, over, nullptr, obs);
+  }
+  static double limit(double) { return kLimit + BanditWorld::kShift; }
+  static Judged judge(Agent& a, size_t envs) {
+    const std::vector<float> obs(envs, 1.0f);
+    std::vector<float> action(envs);
+    a.act(obs.data(), false, action.data());
+    const double mu = static_cast<double>(kBound * action[0]);
+    return {-(mu - 2) * (mu - 2), mu};
+  }
+
+ private:
+  BanditWorld world_;
+};
+
+// Best linear gain without noise under the limit 0.7: 0.741023, return -1.344780; without a limit 0.92, at 1.01.
+class BoundedLqr {
+ public:
+  static constexpr int kObs = 1;
+  static constexpr double kLimit = 0.7, kBest = -1.344780, kGain = 0.741023;
+  BoundedLqr(size_t envs, uint64_t seed) : world_(envs, seed) {}
+  void start(float* obs) { world_.start(obs); }
+  void step(const float* action, float* reward, float* cost, uint8_t* over, uint8_t*, float* obs) {
+    world_.step(action, reward, cost, over, nullptr, obs);
+  }
+  static double limit(double noise) {
+    double cost = 0, square = 1;
+    for (int t = 0; t < LqrWorld::kSteps; ++t) {
+      cost += kGain * kGain * square + noise * noise;
+      square = (1 - kGain) * (1 - kGain) * square + noise * noise + 0.01;
+    }
+    return cost;
+  }
+  // 20,000 episodes, beside the best gain's in the same ones.
+  static Judged judge(Agent& a, size_t envs) {
+    Judged sum[2];
+    for (int which = 0; which < 2; ++which) {
+      LqrWorld world(envs, 77);
+      std::vector<float> obs(envs), action(envs), reward(envs), cost(envs);
+      std::vector<uint8_t> over(envs);
+      world.start(obs.data());
+      const int episodes = 20000 / static_cast<int>(envs);
+      for (int t = 0; t < episodes * LqrWorld::kSteps; ++t) {
+        if (which == 0) a.act(obs.data(), false, action.data());
+        for (size_t i = 0; i < envs; ++i)
+          action[i] = which == 0 ? kBound * action[i] : -static_cast<float>(kGain) * obs[i];
+        world.step(action.data(), reward.data(), cost.data(), over.data(), nullptr, obs.data());
+        for (size_t i = 0; i < envs; ++i) {
+          sum[which].ret += static_cast<double>(reward[i]) / 20000;
+          sum[which].cost += static_cast<double>(cost[i]) / 20000;
+        }
+      }
+    }
+    return {kBest + sum[0].ret - sum[1].ret, kLimit + sum[0].cost - sum[1].cost};
+  }
+
+ private:
+  LqrWorld world_;
+};
+
+// Trains and judges; env count 50. bound: factor on the agent's actions.
 template <class World>
-Judged learn_world(AgentSetup& s, int epochs) {
+Judged learn_world(AgentSetup& s, int epochs, float bound = 1) {
   const AgentPtr a = s.make();
   const auto n = size_of(s.config.num_envs);
   World world(n, 100 + s.config.seed);
@@ -162,6 +234,7 @@ Judged learn_world(AgentSetup& s, int epochs) {
   for (int e = 0; e < epochs; ++e) {
     while (a->missing() > 0) {
       a->act(obs.data(), true, action.data());
+      for (float& x : action) x *= bound;
       world.step(action.data(), reward.data(), cost.data(), over.data(), nullptr, obs.data());
       a->record(t);
     }
