@@ -129,9 +129,9 @@ struct Pair {
     file = policy_file(*teacher);
   }
   void begin(Agent& student) const {
-    Policy* p = Policy::read(file.data(), file.size(), HostHooks{});
-    student.load_policy(p->view(), 1000);
-    Policy::destroy(p);
+    const std::unique_ptr<Policy, void (*)(Policy*)> p(Policy::read(file.data(), file.size(), HostHooks{}),
+                                                       &Policy::destroy);
+    student.load_policy(p->view(), 1000);  // may refuse it
   }
   AgentPtr teacher;
   std::vector<unsigned char> file;
