@@ -178,6 +178,7 @@ class PoolWindow(Window):
                  limits: Optional[Mapping[str, Optional[float]]] = None) -> None:
         self._pool, self._env, self._record = weakref.ref(pool), env, page.record
         self._shield, self._stepped_in, self._decided = page.shield, np.zeros(pool.num_envs, bool), pool.action.copy()
+        self._holds = np.zeros(pool.num_envs, bool)  # worlds that hold a decision of the shield
         self._lead: Optional[Lead] = None
         self._led: Optional[Array] = None  # the action that leads
         self._feed: Any = Feed(weakref.proxy(pool), env, count, actor=actor, limits=limits,
@@ -270,11 +271,13 @@ class PoolWindow(Window):
         pool = self._pool()
         self._stepped_in[:] = False
         if pool is None or self._shield is None or not self._state["shield"]:
+            self._holds[:] = False
             return
         decides = pool.episode_step % self._shield.steps == 0
         self._stepped_in[:] = self._shield.guard(decides) != ShieldKind.OWN
         self._decided[decides] = pool.action[decides]
-        pool.action[:] = self._decided
+        self._holds |= decides  # a decision that began before the shield was on goes on to its end
+        pool.action[self._holds] = self._decided[self._holds]
 
     def _switch_take(self) -> None:
         """Begins or ends a recording, as the page says."""
