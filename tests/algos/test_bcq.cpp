@@ -10,11 +10,6 @@ namespace {
 constexpr size_t kBatch = 10, kObs = 3, kAction = 2, kLatent = 2 * kAction, kCandidates = 3;
 constexpr double kRate = 1e-2, kTau = 0.2, kWeight = 0.6, kPerturb = 0.3;
 
-Numbers with_tanh(Numbers y) {
-  for (double& v : y) v = std::tanh(v);
-  return y;
-}
-
 // Latent vector z [kLatent] from one at, decoded and moved.
 Numbers candidate(const PlainNet& decoder, const PlainNet& perturb, const Numbers& obs, const Numbers& z,
                   size_t at) {
@@ -31,21 +26,11 @@ Numbers candidate(const PlainNet& decoder, const PlainNet& perturb, const Number
 // Rows and noise are drawn by the same streams.
 TEST(Bcq, StepsAreThoseInDouble) {
   const Recorded r = noise(12, kObs, kAction);
-  AgentSetup s("bcq_lag", kObs, kAction, 1,
-               {{"hidden", "5", 0},
-                {"activation", "tanh", 0},
-                {"replay_rows", "200", 0},
-                {"batch_rows", "10", 0},
-                {"learning_rate", "1e-2", 0},
-                {"tau", "0.2", 0},
-                {"discount", "0.9", 0},
-                {"candidates", "3", 0},
-                {"perturb", "0.3", 0},
-                {"normalize_obs", "off", 0},
-                {"multiplier_init", "0.6", 0},
-                {"multiplier_lr", "0", 0},
-                {"last_layer_scale", "1", 0}});
-  s.config.max_steps = 12;
+  AgentSetup s = step_by_step("bcq_lag", kObs, kAction, "10",
+                              {{"candidates", "3", 0},
+                               {"perturb", "0.3", 0},
+                               {"multiplier_init", "0.6", 0},
+                               {"multiplier_lr", "0", 0}});
   const AgentPtr a = s.make();
   a->learn(r.rows(), 0);
   PlainNet actor = net_of(*a, "actor"), encoder = net_of(*a, "action_encoder"),
@@ -120,20 +105,17 @@ TEST(Bcq, StepsAreThoseInDouble) {
     perturb_adam.step(perturb.p, perturb_slope, kRate);
     actor_adam.step(actor.p, actor_slope, kRate);
     a->learn(r.rows(), 1);
-    const std::pair<const char*, const PlainNet*> pairs[] = {{"actor", &actor},
-                                                             {"reward_q1", &q[0]},
-                                                             {"reward_q2", &q[1]},
-                                                             {"cost0_q1", &q[2]},
-                                                             {"cost0_q2", &q[3]},
-                                                             {"perturb", &perturb},
-                                                             {"action_encoder", &encoder},
-                                                             {"action_decoder", &decoder}};
-    for (const auto& [name, wanted] : pairs) {
-      const PlainNet now = net_of(*a, name);
-      ASSERT_EQ(now.p.size(), wanted->p.size());
-      for (size_t i = 0; i < now.p.size(); ++i)
-        EXPECT_NEAR(now.p[i], wanted->p[i], 3e-4) << name << ' ' << i << " step " << step;
-    }
+    SCOPED_TRACE("step " + std::to_string(step));
+    expect_nets(*a,
+                {{"actor", &actor},
+                 {"reward_q1", &q[0]},
+                 {"reward_q2", &q[1]},
+                 {"cost0_q1", &q[2]},
+                 {"cost0_q2", &q[3]},
+                 {"perturb", &perturb},
+                 {"action_encoder", &encoder},
+                 {"action_decoder", &decoder}},
+                3e-4);
     ASSERT_FALSE(HasFailure());
   }
 }

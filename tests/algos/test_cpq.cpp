@@ -40,21 +40,9 @@ struct Branches {
 // Six steps, with rows and noise by the same streams.
 void compare(const char* cost_limit, Branches& branches) {
   const Recorded r = noise(12, kObs, kAction);
-  AgentSetup s("cpq", kObs, kAction, 1,
-               {{"hidden", "5", 0},
-                {"activation", "tanh", 0},
-                {"replay_rows", "200", 0},
-                {"batch_rows", "10", 0},
-                {"learning_rate", "1e-2", 0},
-                {"tau", "0.2", 0},
-                {"discount", "0.9", 0},
-                {"outside", "0.5", 0},
-                {"lift_lr", "3", 0},
-                {"lift_max", "4", 0},
-                {"cost_limit", cost_limit, 0},
-                {"normalize_obs", "off", 0},
-                {"last_layer_scale", "1", 0}});
-  s.config.max_steps = 12;
+  AgentSetup s = step_by_step(
+      "cpq", kObs, kAction, "10",
+      {{"outside", "0.5", 0}, {"lift_lr", "3", 0}, {"lift_max", "4", 0}, {"cost_limit", cost_limit, 0}});
   const AgentPtr a = s.make();
   a->learn(r.rows(), 0);
   PlainNet actor = net_of(*a, "actor"), encoder = net_of(*a, "action_encoder"),
@@ -139,15 +127,16 @@ void compare(const char* cost_limit, Branches& branches) {
     });
     actor_adam.step(actor.p, g, kRate);
     a->learn(r.rows(), 1);
-    const std::pair<const char*, const PlainNet*> pairs[] = {
-        {"actor", &actor},   {"reward_q1", &q[0]},         {"reward_q2", &q[1]},        {"cost0_q1", &q[2]},
-        {"cost0_q2", &q[3]}, {"action_encoder", &encoder}, {"action_decoder", &decoder}};
-    for (const auto& [name, wanted] : pairs) {
-      const PlainNet now = net_of(*a, name);
-      ASSERT_EQ(now.p.size(), wanted->p.size());
-      for (size_t i = 0; i < now.p.size(); ++i)
-        EXPECT_NEAR(now.p[i], wanted->p[i], 3e-4) << name << ' ' << i << " step " << step;
-    }
+    SCOPED_TRACE("step " + std::to_string(step));
+    expect_nets(*a,
+                {{"actor", &actor},
+                 {"reward_q1", &q[0]},
+                 {"reward_q2", &q[1]},
+                 {"cost0_q1", &q[2]},
+                 {"cost0_q2", &q[3]},
+                 {"action_encoder", &encoder},
+                 {"action_decoder", &decoder}},
+                3e-4);
     ASSERT_FALSE(::testing::Test::HasFailure());
   }
 }

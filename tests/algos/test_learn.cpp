@@ -158,34 +158,19 @@ TEST(Learn, Td3BcStepsAreThoseInDouble) {
   constexpr double kRate = 1e-2, kTau = 0.2, kAlpha = 1.7, kWeight = 0.6;
   constexpr size_t kBatch = 10;
   const Recorded r = noise(12, 3, 2);
-  AgentSetup s("td3_bc_lag", 3, 2, 1,
-               {{"hidden", "5", 0},
-                {"activation", "tanh", 0},
-                {"replay_rows", "200", 0},
-                {"batch_rows", "10", 0},
-                {"learning_rate", "1e-2", 0},
-                {"tau", "0.2", 0},
-                {"discount", "0.9", 0},
-                {"bc_alpha", "1.7", 0},
-                {"policy_delay", "1", 0},
-                {"target_std", "0", 0},
-                {"normalize_obs", "off", 0},
-                {"multiplier_init", "0.6", 0},
-                {"multiplier_lr", "0", 0},
-                {"last_layer_scale", "1", 0}});
-  s.config.max_steps = 12;
+  AgentSetup s = step_by_step("td3_bc_lag", 3, 2, "10",
+                              {{"bc_alpha", "1.7", 0},
+                               {"policy_delay", "1", 0},
+                               {"target_std", "0", 0},
+                               {"multiplier_init", "0.6", 0},
+                               {"multiplier_lr", "0", 0}});
   const AgentPtr a = s.make();
   a->learn(r.rows(), 0);
   PlainNet actor = net_of(*a, "actor"), q[4] = {net_of(*a, "reward_q1"), net_of(*a, "reward_q2"),
                                                 net_of(*a, "cost0_q1"), net_of(*a, "cost0_q2")};
   PlainNet slow_actor = actor, slow[4] = {q[0], q[1], q[2], q[3]};
   PlainAdam actor_adam, adam[4];
-  const auto acts = [](const PlainNet& net, const Numbers& x) {
-    Numbers y = net(x);
-    for (double& v : y) v = std::tanh(v);
-    return y;
-  };
-  const auto numbers = [](const float* x, size_t n) { return Numbers(x, x + n); };
+  const auto acts = [](const PlainNet& net, const Numbers& x) { return with_tanh(net(x)); };
   const Replay& m = memory_of(*a);
   Stream draws(s.config.seed, 1 << 20, Purpose::kMinibatch);
   for (int step = 0; step < 6; ++step) {
@@ -235,17 +220,14 @@ TEST(Learn, Td3BcStepsAreThoseInDouble) {
     actor_adam.step(actor.p, g, kRate);
     for (size_t i = 0; i < g.size(); ++i) slow_actor.p[i] += kTau * (actor.p[i] - slow_actor.p[i]);
     a->learn(r.rows(), 1);
-    const std::pair<const char*, const PlainNet*> pairs[] = {{"actor", &actor},
-                                                             {"reward_q1", &q[0]},
-                                                             {"reward_q2", &q[1]},
-                                                             {"cost0_q1", &q[2]},
-                                                             {"cost0_q2", &q[3]}};
-    for (const auto& [name, wanted] : pairs) {
-      const PlainNet now = net_of(*a, name);
-      ASSERT_EQ(now.p.size(), wanted->p.size());
-      for (size_t i = 0; i < now.p.size(); ++i)
-        EXPECT_NEAR(now.p[i], wanted->p[i], 2e-4) << name << ' ' << i << " step " << step;
-    }
+    SCOPED_TRACE("step " + std::to_string(step));
+    expect_nets(*a,
+                {{"actor", &actor},
+                 {"reward_q1", &q[0]},
+                 {"reward_q2", &q[1]},
+                 {"cost0_q1", &q[2]},
+                 {"cost0_q2", &q[3]}},
+                2e-4);
     ASSERT_FALSE(HasFailure());
   }
 }

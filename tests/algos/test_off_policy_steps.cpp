@@ -15,29 +15,15 @@ constexpr double kRate = 1e-2, kTau = 0.2, kWeight = 0.6;
 
 // Epochs of 40 decisions of one world, a gradient step in each.
 AgentSetup one_step_an_epoch(const char* algo) {
-  AgentSetup s(algo, kObs, kAct, 1,
-               {{"hidden", "5", 0},
-                {"activation", "tanh", 0},
-                {"horizon", "40", 0},
-                {"start_steps", "0", 0},
-                {"updates_per_step", "0.025", 0},
-                {"replay_rows", "200", 0},
-                {"batch_rows", "12", 0},
-                {"learning_rate", "1e-2", 0},
-                {"tau", "0.2", 0},
-                {"discount", "0.9", 0},
-                {"normalize_obs", "off", 0},
-                {"cost_limit", "1", 0},
-                {"multiplier_init", "0.6", 0},
-                {"multiplier_lr", "0", 0},
-                {"last_layer_scale", "1", 0}});
-  s.config.max_steps = 12;
+  AgentSetup s = step_by_step(algo, kObs, kAct, "12",
+                              {{"horizon", "40", 0},
+                               {"start_steps", "0", 0},
+                               {"updates_per_step", "0.025", 0},
+                               {"cost_limit", "1", 0},
+                               {"multiplier_init", "0.6", 0},
+                               {"multiplier_lr", "0", 0}});
   s.config.seed = 7;
   return s;
-}
-
-Numbers numbers(const float* x, size_t n) {
-  return Numbers(x, x + n);
 }
 
 // What both have in common; a policy says what its actions are.
@@ -107,16 +93,13 @@ struct Plain {
   }
   double cost_value(const Numbers& x) const { return kWeight * std::max(q[2](x)[0], q[3](x)[0]); }
   void compare() {
-    const std::pair<const char*, const PlainNet*> pairs[] = {{"actor", &actor},
-                                                             {"reward_q1", &q[0]},
-                                                             {"reward_q2", &q[1]},
-                                                             {"cost0_q1", &q[2]},
-                                                             {"cost0_q2", &q[3]}};
-    for (const auto& [name, wanted] : pairs) {
-      const PlainNet now = net_of(agent, name);
-      ASSERT_EQ(now.p.size(), wanted->p.size());
-      for (size_t i = 0; i < now.p.size(); ++i) EXPECT_NEAR(now.p[i], wanted->p[i], 1e-4) << name << ' ' << i;
-    }
+    expect_nets(agent,
+                {{"actor", &actor},
+                 {"reward_q1", &q[0]},
+                 {"reward_q2", &q[1]},
+                 {"cost0_q1", &q[2]},
+                 {"cost0_q2", &q[3]}},
+                1e-4);
   }
 };
 
@@ -207,11 +190,7 @@ TEST(OffPolicySteps, Td3LagIsThatInDouble) {
   Plain plain(*a, s.config.seed);
   PlainNet slow_actor = plain.actor;
   NoiseWorld world(s.config);
-  const auto acts = [](const PlainNet& net, const Numbers& x) {
-    Numbers y = net(x);
-    for (double& v : y) v = std::tanh(v);
-    return y;
-  };
+  const auto acts = [](const PlainNet& net, const Numbers& x) { return with_tanh(net(x)); };
   for (int step = 1; step <= 8 && !HasFailure(); ++step) {
     play(world, *a);
     const Numbers z = plain.normals();

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <utility>
 
 #include "agents.hpp"
 #include "algos/off_policy/off_policy.hpp"
@@ -89,6 +90,11 @@ inline Numbers normals(Stream& stream, size_t n) {
   std::vector<float> z(n);
   stream.normals(z.data(), static_cast<int>(n));
   return Numbers(z.begin(), z.end());
+}
+
+inline Numbers with_tanh(Numbers y) {
+  for (double& v : y) v = std::tanh(v);
+  return y;
 }
 
 // What a pair of critics says of a cost.
@@ -178,6 +184,35 @@ inline AgentSetup learner(const char* algo, const Recorded& r, const char* repla
 
 inline const Replay& memory_of(Agent& a) {
   return static_cast<OffPolicy&>(a).replay();
+}
+
+// A learner of one small hidden layer and large steps, whose every step is told beside the same in double.
+inline AgentSetup step_by_step(const char* algo, int32_t obs_dim, int32_t action_dim, const char* batch_rows,
+                               const std::vector<OptionInput>& more) {
+  AgentSetup s(algo, obs_dim, action_dim, 1,
+               {{"hidden", "5", 0},
+                {"activation", "tanh", 0},
+                {"replay_rows", "200", 0},
+                {"batch_rows", batch_rows, 0},
+                {"learning_rate", "1e-2", 0},
+                {"tau", "0.2", 0},
+                {"discount", "0.9", 0},
+                {"normalize_obs", "off", 0},
+                {"last_layer_scale", "1", 0}});
+  s.options.insert(s.options.end(), more.begin(), more.end());
+  s.config.max_steps = 12;
+  return s;
+}
+
+// The agent's networks are those that were computed, by the prefixes of their tensors.
+inline void expect_nets(Agent& a, const std::vector<std::pair<const char*, const PlainNet*>>& nets,
+                        double tolerance) {
+  for (const auto& [name, wanted] : nets) {
+    const PlainNet now = net_of(a, name);
+    ASSERT_EQ(now.p.size(), wanted->p.size()) << name;
+    for (size_t i = 0; i < now.p.size(); ++i)
+      EXPECT_NEAR(now.p[i], wanted->p[i], tolerance) << name << ' ' << i;
+  }
 }
 
 }  // namespace rdm::test
