@@ -4,8 +4,9 @@
 //   estimate  advantages and targets, a column at a time; the list of rows
 //   judge     episodes' costs against their limits, the algorithm's begin_epoch
 //   step      the algorithm's own step of the policy, where it has one (a trust region)
-//   passes    (of a student, option latent_from=history, nothing else: its encoder's) shuffled minibatches: what the algorithm measures, the gradient, Adam's step; the KL that may end
-//             them; then an algorithm's second passes, of the policy alone
+//   passes    shuffled minibatches: what the algorithm measures, the gradient, Adam's step; the KL that may end
+//             them; then an algorithm's second passes, of the policy alone. Of a student (option latent_from=history)
+//             these are the passes of its encoder, and nothing else is learned
 //   end       schedules, the Epoch, an empty rollout
 //
 // Between two jobs, and between two units of a job, it can be left: what it needs to go on stands in members.
