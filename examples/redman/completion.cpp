@@ -54,8 +54,9 @@ std::string robot_words() {
   return joined(names);
 }
 
+// Of a flag, or of the arguments that a command takes without one: then `name` is all of the command's words.
 std::string value_words(const std::string& name, bool positional) {
-  if (name == "task" || name == "tasks") return task_words();
+  if (name == "task" || name == "tasks" || (name == "data make" && positional)) return task_words();
   if (name == "algo" || name == "algos") return algo_words();
   if (name == "robot" && positional) return robot_words();
   if (name == "object" && positional) return joined(object_names());
@@ -77,13 +78,18 @@ Flag flag_of(const CLI::Option& option) {
 }
 
 void gather_commands(const CLI::App& app, const std::vector<std::string>& path, std::vector<Command>& out) {
-  Command command{path, app.get_description(), {}, {}, value_words(path.empty() ? "" : path.back(), true)};
+  Command command{path, app.get_description(), {}, {}, value_words(joined(path), true)};
   for (const CLI::Option* option : app.get_options())
     if (!option->get_positional() || !option->get_lnames().empty()) command.flags.push_back(flag_of(*option));
   command.flags.push_back({{"--json"}, "one JSON object on one line", false, ""});
   if (!path.empty()) command.flags.push_back({{"--plugin"}, kPluginHelp, true, ""});
   const auto children = app.get_subcommands([](const CLI::App*) { return true; });
   for (const CLI::App* child : children) command.children.push_back(child->get_name());
+  if (path.empty()) {
+    const std::string names = joined(command.children);
+    command.children.emplace_back("help");
+    out.push_back({{"help"}, "Explain a command", {}, {}, names});
+  }
   out.push_back(command);
   for (const CLI::App* child : children) {
     std::vector<std::string> longer = path;

@@ -32,7 +32,8 @@ struct Arguments {
   bool json = false;
 };
 
-// --json and --plugin may stand anywhere, and flags may be written with underscores or capitals.
+// --json and --plugin may stand anywhere, and flags may be written with underscores or capitals. `help train` is
+// `train --help`.
 Arguments read_arguments(int argc, char** argv) {
   Arguments out;
   for (int i = 1; i < argc; ++i) {
@@ -46,6 +47,10 @@ Arguments read_arguments(int argc, char** argv) {
       out.json = true;
     else
       out.words.push_back(word);
+  }
+  if (!out.words.empty() && out.words.front() == "help") {
+    out.words.erase(out.words.begin());
+    out.words.push_back("--help");
   }
   return out;
 }
@@ -91,27 +96,37 @@ std::string unknown_flag(const CLI::App& command, const std::vector<std::string>
   return "";
 }
 
+// The deepest command that was named, its path, and why the word after it names none below it; "" when it does.
+struct Named {
+  const CLI::App* command;
+  std::string path, unknown;
+};
+Named named_command(const CLI::App& app, const std::vector<std::string>& words) {
+  Named out{&app, "redman", ""};
+  size_t depth = 0;
+  for (; !out.command->get_subcommands().empty(); ++depth) {
+    out.command = out.command->get_subcommands().front();
+    out.path += ' ' + out.command->get_name();
+  }
+  const std::vector<std::string> below = subcommands_of(*out.command);
+  const std::string next = depth < words.size() ? words[depth] : "";
+  if (!below.empty() && !next.empty() && next[0] != '-')
+    out.unknown = "subcommand" + out.path.substr(std::strlen("redman")) + ' ' + next + ": unknown" +
+                  nearest_hint(next, below) + "; see " + out.path + " --help";
+  return out;
+}
+
 // CLI11 answers an unknown subcommand or flag with a list of unexpected arguments, and a number that does not
 // fit into a flag's type as one that it cannot convert.
 std::string usage_text(const CLI::App& app, const CLI::ParseError& error, const Arguments& arguments) {
-  std::string text = error.what(), path = "redman";
+  const Named named = named_command(app, arguments.words);
+  if (!named.unknown.empty()) return named.unknown;
+  const std::string see = "; see " + named.path + " --help";
+  // first: CLI11 takes the value of an unknown flag for an argument, and complains of that
+  const std::string flag = unknown_flag(*named.command, arguments.words);
+  if (!flag.empty()) return flag + ": unknown" + nearest_hint(flag, flags_of(*named.command)) + see;
+  std::string text = error.what();
   std::replace(text.begin(), text.end(), '\n', ' ');
-  const CLI::App* command = &app;
-  size_t depth = 0;
-  for (; !command->get_subcommands().empty(); ++depth) {
-    command = command->get_subcommands().front();
-    path += ' ' + command->get_name();
-  }
-  const std::vector<std::string> below = subcommands_of(*command);
-  const std::string next = depth < arguments.words.size() ? arguments.words[depth] : "";
-  const std::string see = "; see " + path + " --help";
-  if (!below.empty() && !next.empty() && next[0] != '-')
-    return path.replace(0, std::strlen("redman"), "subcommand") + ' ' + next + ": unknown" +
-           nearest_hint(next, below) + see;
-  const std::string flag = unknown_flag(*command, arguments.words);
-  if (!flag.empty() &&
-      (dynamic_cast<const CLI::ExtrasError*>(&error) || dynamic_cast<const CLI::RequiredError*>(&error)))
-    return flag + ": unknown" + nearest_hint(flag, flags_of(*command)) + see;
   const std::string unread = "Could not convert: ";
   if (text.rfind(unread, 0) == 0) {
     text = text.substr(unread.size()) + ": out of range";
@@ -130,6 +145,9 @@ void work(CLI::App& app, Run& run, const Arguments& arguments) {
     app.parse(std::vector<std::string>(arguments.words.rbegin(), arguments.words.rend()));
     print_result(run(), arguments.json);
   } catch (const CLI::CallForHelp&) {
+    // CLI11 answers --help before it looks at words that it does not know
+    if (const Named named = named_command(app, arguments.words); !named.unknown.empty())
+      throw Usage(named.unknown);
     const std::string text = app.help();  // of the subcommand, if there is one
     print_result({{{"help", text}}, text + '\n'}, arguments.json);
   } catch (const CLI::CallForVersion&) {
@@ -214,7 +232,7 @@ int run_tool(int argc, char** argv) {
       footer_of("redman train --task hand_over_safe_finger --steps 1e6 --out runs/first\n"
                 "  redman eval --policy runs/first\n"
                 "  redman render --policy runs/first --html episode.html\n\n"
-                "redman COMMAND --help explains a command."));
+                "redman help COMMAND explains a command."));
   app.require_subcommand(1);
   app.option_defaults()->always_capture_default();
   Run run;

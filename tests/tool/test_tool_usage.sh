@@ -24,6 +24,13 @@ expect() {
 
 expect 0 '' --help
 expect 0 '' train --help
+for words in '' train 'bench step' 'data make'; do  # `help WORDS` is `WORDS --help`
+  # shellcheck disable=SC2086
+  [ "$("$tool" help $words)" = "$("$tool" $words --help)" ] || { echo "redman help $words differs from redman $words --help"; failed=1; }
+done
+"$tool" completion bash > completion
+grep -q "^ *'help') words='.* train " completion && grep -q "^ *'data make') words='.* grasp " completion &&
+  ! grep "^ *'data info')" completion | grep -q planner || { echo "completion has other words: $(cat completion)"; failed=1; }
 expect 0 ''
 grep -q '^Train and play:' out || { echo "redman alone shows no help: $(cat out)"; failed=1; }
 expect 2 'nearest is train' trian

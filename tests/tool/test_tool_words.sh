@@ -42,6 +42,10 @@ refused 2 'nearest is hold' baseline --policy hodl
 # Subcommands and flags, at each depth.
 refused 2 'subcommand trian: unknown; nearest is train' trian
 refused 2 'subcommand bench stp: unknown; nearest is step; see redman bench --help' bench stp
+refused 2 'subcommand trian: unknown; nearest is train' trian --help
+refused 2 'subcommand trian: unknown; nearest is train' help trian
+refused 2 'subcommand bench stp: unknown; nearest is step' help bench stp
+refused 2 '--task: unknown; see redman info --help' info --task grasp
 refused 2 '--stpes: unknown; nearest is --steps; see redman train --help' train --stpes 3
 refused 2 '--evns: unknown; nearest is --envs' bench step --evns=3
 refused 2 '--verson: unknown; nearest is --version' --verson
