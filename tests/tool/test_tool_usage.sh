@@ -44,6 +44,10 @@ expect 2 'outside' train --set clip=-1
 expect 0 '' rollout --task grasp --policy zero --set max_steps=2 --set 'noise.*_tip_*=0.01..0.02' --set action_delay=1..3
 expect 2 'nearest is object.position' rollout --task grasp --policy zero --set noise.object.positon=0.1
 expect 2 'it takes one number, not a range' rollout --task grasp --policy zero --set frequency=30..60
+long='right.joint_position,right.joint_velocity,right.joint_force,right.action,object.*'  # more than RDM_TEXT_SIZE has room for
+expect 0 '' train --task grasp --set "actor_obs=$long" --envs 2 --set horizon=8 --set minibatches=1 --steps 32 --threads 1 --no-tensorboard --out long
+grep -q "\"actor_obs\": *\"$long\"" long/config.json || { echo "config.json has another actor_obs: $(cat long/config.json)"; failed=1; }
+expect 0 '' train --resume long --steps 64
 expect 2 'names no field of the observation; nearest is object.spin' train --task grasp --set actor_obs=object.spn
 expect 2 'not a number' train --cost-limit many
 expect 2 'nearest is drop' train --cost-limit dropp=1

@@ -6,6 +6,7 @@
 #include "bench/bench.hpp"
 #include "common/clock.hpp"
 #include "common/names.hpp"
+#include "common/setting.hpp"
 #include "common/text.hpp"
 
 namespace tool {
@@ -90,7 +91,7 @@ Report bench_latency(LatencyFlags flags) {
   pool.reset();
   redman::Agent agent =
       make_agent(flags.agent, pool, cost_limits(pool, {}), flags.pool.seed, flags.pool.threads);
-  const int32_t horizon = std::stoi(agent_option(agent, flags.agent.algo, "horizon"));
+  const int32_t horizon = std::stoi(agent_setting(agent, flags.agent.algo, "horizon"));
   fill_horizon(agent, pool, horizon);
   agent.update(pool.obs().data());  // warm-up
 

@@ -228,17 +228,6 @@ bool has_option(const std::string& algo, const char* wanted) {
   return false;
 }
 
-std::string agent_option(const redman::Agent& agent, const std::string& algo, const char* wanted) {
-  const int32_t count = algo_at(find_algo(algo)).num_options;
-  for (int32_t i = 0; i < count; ++i) {
-    const char* key = nullptr;
-    char text[RDM_TEXT_SIZE];
-    redman::check(rdm_agent_setting_at(agent.get(), i, &key, text));
-    if (same_name(key, wanted)) return text;
-  }
-  throw Failure("algorithm " + algo + " has no option " + wanted);
-}
-
 std::vector<double> cost_limits(const redman::Pool& pool, const std::vector<std::string>& texts) {
   const auto costs = task_costs(pool.spec().task);
   const auto config = redman::agent_config(pool);

@@ -74,9 +74,7 @@ redman::Pool make_pool(const PoolSettings& settings, int32_t autoreset);
 redman::Agent make_agent(const AgentSettings& settings, const redman::Pool& pool,
                          const std::vector<double>& limits, uint64_t seed, int32_t threads,
                          const rdm_ranks* ranks = nullptr);
-// The value of an option of its algorithm, as text.
 bool has_option(const std::string& algo, const char* wanted);
-std::string agent_option(const redman::Agent& agent, const std::string& algo, const char* wanted);
 
 // [cost_dim] limits: the task's own, with "40" (column 0) or "name=3" of each text laid over. < 0: none.
 std::vector<double> cost_limits(const redman::Pool& pool, const std::vector<std::string>& texts);

@@ -4,10 +4,10 @@
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
-#include <sstream>
 #include <utility>
 
 #include "common/names.hpp"
+#include "common/setting.hpp"
 #include "common/text.hpp"
 
 namespace tool {
@@ -106,22 +106,6 @@ bool find_base(const redman::Pool& pool, int32_t robot, const std::string& prefi
 }
 
 }  // namespace
-
-Options settings_of(const redman::Pool& pool) {
-  Options out;
-  std::istringstream lines(pool.settings());
-  for (std::string line; std::getline(lines, line);)
-    if (const size_t equals = line.find('='); equals != std::string::npos)
-      out.emplace_back(line.substr(0, equals), line.substr(equals + 1));
-  return out;
-}
-
-std::string option_of(const Options& options, const std::string& key) {
-  std::string out;
-  for (const auto& [name, value] : options)
-    if (same_name(name, key)) out = value;
-  return out;
-}
 
 void turn_of(const double rpy[3], double q[4]) {
   double out[4] = {0, 0, 0, 1};

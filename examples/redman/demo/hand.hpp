@@ -14,11 +14,6 @@
 
 namespace tool {
 
-// All options of a pool.
-Options settings_of(const redman::Pool& pool);
-// The value of a key, the last one given; "" where there is none.
-std::string option_of(const Options& options, const std::string& key);
-
 // Position, m, and unit quaternion (x, y, z, w), world.
 struct Place {
   double p[3] = {}, q[4] = {0, 0, 0, 1};

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "common/names.hpp"
+#include "common/setting.hpp"
 #include "common/text.hpp"
 
 namespace tool {
@@ -16,7 +17,7 @@ constexpr double kPi = 3.14159265358979323846;
 
 // The hands of a pool in the order of its action row.
 std::vector<DemoHand> hands_of(const redman::Pool& pool) {
-  const Options settings = settings_of(pool);
+  const Options settings = read_settings(pool.settings());
   bool two = false;
   for (int32_t i = 0; i < pool.spec().num_fields; ++i) {
     rdm_field_info f = RDM_INIT(rdm_field_info);

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "common/names.hpp"
+#include "common/setting.hpp"
 #include "common/text.hpp"
 #include "demo/hand.hpp"
 #include "teach/settings.hpp"

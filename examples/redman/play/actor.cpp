@@ -8,6 +8,7 @@
 #include "common/files.hpp"
 #include "common/names.hpp"
 #include "common/scatter.hpp"
+#include "common/setting.hpp"
 #include "common/text.hpp"
 #include "play/plan_word.hpp"
 #include "play/trained.hpp"
@@ -139,9 +140,10 @@ void adopt_task(const ActorChoice& choice, bool task_given, const std::vector<st
 Actor::Actor(const ActorChoice& choice, redman::Pool& pool, bool stochastic, uint64_t seed)
     : baseline_(choice.baseline) {
   if (choice.demo)
-    demo_.emplace(
-        choice.script ? *choice.script : builtin_demo(task_at(pool.spec().task).name, settings_of(pool)),
-        pool);
+    demo_.emplace(choice.script
+                      ? *choice.script
+                      : builtin_demo(task_at(pool.spec().task).name, read_settings(pool.settings())),
+                  pool);
   if (choice.plan) {
     make_planners(choice, pool, seed);
   } else if (choice.recording) {

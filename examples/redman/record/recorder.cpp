@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "common/names.hpp"
+#include "common/setting.hpp"
 #include "common/text.hpp"
 #include "record/npy.hpp"
 #include "record/zip.hpp"
@@ -203,11 +204,7 @@ std::string Recorder::metadata(const RecordNote& note, uint64_t steps) const {
   }
   int32_t index = 0;
   for (const rdm_option_spec& o : task_options(spec.task)) {
-    const char* key = nullptr;
-    char text[RDM_TEXT_SIZE];
-    if (rdm_pool_setting_at(pool_.get(), index++, &key, text) == RDM_OK) options[o.key] = text;
-    for (const auto& [name, value] : note.options)  // a longer text than that call gives
-      if (same_name(name, o.key) && value.size() >= sizeof text) options[o.key] = value;
+    options[o.key] = pool_setting(pool_, index++, o.key);
   }
   for (const auto& [key, value] : note.options) set.push_back(key + "=" + value);
   for (const Column& c : columns_) arrays[c.name] = c.help;

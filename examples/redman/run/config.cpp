@@ -2,10 +2,10 @@
 
 #include <cmath>
 #include <functional>
-#include <sstream>
 
 #include "common/json.hpp"
 #include "common/names.hpp"
+#include "common/setting.hpp"
 #include "common/text.hpp"
 
 namespace tool {
@@ -47,11 +47,7 @@ std::string file_at(const Document& object, const std::string& key) {
 // Every option as it stands, of lines key=value.
 Json values_json(const std::string& settings) {
   Json out = Json::object();
-  std::istringstream lines(settings);
-  for (std::string line; std::getline(lines, line);) {
-    const size_t equals = line.find('=');
-    out[line.substr(0, equals)] = line.substr(equals + 1);
-  }
+  for (const auto& [key, value] : read_settings(settings)) out[key] = value;
   return out;
 }
 

@@ -10,6 +10,7 @@
 #include "common/clock.hpp"
 #include "common/files.hpp"
 #include "common/names.hpp"
+#include "common/setting.hpp"
 #include "common/text.hpp"
 
 namespace tool {
@@ -138,7 +139,7 @@ bool Trainer::wants_starts() const {
 
 bool Trainer::wants_imitation() const {
   if (!has_option(settings_.agent.algo, "imitation")) return false;
-  return std::strtod(agent_option(agent_, settings_.agent.algo, "imitation").c_str(), nullptr) > 0;
+  return std::strtod(agent_setting(agent_, settings_.agent.algo, "imitation").c_str(), nullptr) > 0;
 }
 
 // The share of starts goes from its first value to its last in step with the run.
@@ -179,7 +180,7 @@ void Trainer::follow(const std::string& checkpoint) {
 }
 
 int64_t Trainer::option(const char* key) const {
-  return std::strtoll(agent_option(agent_, settings_.agent.algo, key).c_str(), nullptr, 10);
+  return std::strtoll(agent_setting(agent_, settings_.agent.algo, key).c_str(), nullptr, 10);
 }
 
 int64_t Trainer::steps_per_epoch() const {

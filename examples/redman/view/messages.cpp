@@ -4,6 +4,7 @@
 #include <redman/sense.hpp>
 
 #include "common/names.hpp"
+#include "common/setting.hpp"
 #include "common/text.hpp"
 #include "draw/image.hpp"
 #include "draw/solid.hpp"
@@ -188,14 +189,11 @@ Json Session::scene() const {
     actions.push_back(names[i].empty() ? format("action[%zu]", i) : names[i]);
   int32_t index = 0;
   for (const rdm_option_spec& o : task_options(spec.task)) {
-    const char* key = nullptr;
-    char text[RDM_TEXT_SIZE];
-    if (rdm_pool_setting_at(pool_->get(), index++, &key, text) != RDM_OK) continue;
     options.push_back({{"key", o.key},
                        {"help", o.help},
                        {"kind", o.kind},
                        {"level", o.level},
-                       {"value", text},
+                       {"value", pool_setting(*pool_, index++, o.key)},
                        {"choices", o.choices ? o.choices : ""},
                        {"low", o.low},
                        {"high", o.high}});

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
 
 #include "common/names.hpp"
+#include "common/setting.hpp"
 #include "common/text.hpp"
 #include "play/shield_word.hpp"
 #include "play/trained.hpp"
@@ -26,15 +26,11 @@ std::vector<T> copied(const redman::Rows<T>& rows, size_t count) {
 
 // Option limit_range of a pool; -1, -1 without.
 std::array<double, 2> limit_range_of(const redman::Pool& pool) {
-  const char* key = nullptr;
-  char text[RDM_TEXT_SIZE];
-  for (int32_t i = 0; rdm_pool_setting_at(pool.get(), i, &key, text) == RDM_OK; ++i) {
-    if (std::strcmp(key, "limit_range") != 0) continue;
-    const char* const dots = std::strstr(text, "..");
-    const double low = std::strtod(text, nullptr), high = dots ? std::strtod(dots + 2, nullptr) : low;
-    return {low, high};
-  }
-  return {-1, -1};
+  const std::string text = option_of(read_settings(pool.settings()), "limit_range");
+  if (text.empty()) return {-1, -1};
+  const size_t dots = text.find("..");
+  const double low = std::strtod(text.c_str(), nullptr);
+  return {low, dots == std::string::npos ? low : std::strtod(text.c_str() + dots + 2, nullptr)};
 }
 
 }  // namespace

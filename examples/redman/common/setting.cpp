@@ -1,0 +1,55 @@
+#ifndef RDM_EXPERIMENTAL
+#define RDM_EXPERIMENTAL
+#endif
+#include "common/setting.hpp"
+
+#include <sstream>
+
+#include "common/names.hpp"
+#include "common/text.hpp"
+
+namespace tool {
+namespace {
+
+// The lines leave out what option level draws, and the call gives texts of at most RDM_TEXT_SIZE: one of them has it.
+template <class Owner, class SettingAt>
+std::string setting(const Owner& owner, SettingAt setting_at, int32_t i, const std::string& key) {
+  const char* name = nullptr;
+  char text[RDM_TEXT_SIZE];
+  const rdm_result r = setting_at(owner.get(), i, &name, text);
+  if (r == RDM_ERROR_RANGE) return option_of(read_settings(owner.settings()), key);
+  redman::check(r);
+  return text;
+}
+
+}  // namespace
+
+Options read_settings(const std::string& lines) {
+  Options out;
+  std::istringstream in(lines);
+  for (std::string line; std::getline(in, line);)
+    if (const size_t equals = line.find('='); equals != std::string::npos)
+      out.emplace_back(line.substr(0, equals), line.substr(equals + 1));
+  return out;
+}
+
+std::string option_of(const Options& options, const std::string& key) {
+  std::string out;
+  for (const auto& [name, value] : options)
+    if (same_name(name, key)) out = value;
+  return out;
+}
+
+std::string pool_setting(const redman::Pool& pool, int32_t i, const std::string& key) {
+  return setting(pool, rdm_pool_setting_at, i, key);
+}
+
+std::string agent_setting(const redman::Agent& agent, const std::string& algo, const std::string& wanted) {
+  const std::vector<rdm_option_spec> table = algo_options(find_algo(algo));
+  for (size_t i = 0; i < table.size(); ++i)
+    if (same_name(table[i].key, wanted))
+      return setting(agent, rdm_agent_setting_at, static_cast<int32_t>(i), table[i].key);
+  throw Failure("algorithm " + algo + " has no option " + wanted);
+}
+
+}  // namespace tool
