@@ -228,15 +228,16 @@ int run_tool(int argc, char** argv) {
   const bool json = arguments.json;
 
   CLI::App app("Safe dexterous manipulation: simulate, train, evaluate, look.", "redman");
+  app.require_subcommand(1);
+  app.option_defaults()->always_capture_default();
+  Run run;
+  add_commands(app, run, arguments.words);
+  // After the commands, which would inherit it.
   app.footer(
       footer_of("redman train --task hand_over_safe_finger --steps 1e6 --out runs/first\n"
                 "  redman eval --policy runs/first\n"
                 "  redman render --policy runs/first --html episode.html\n\n"
                 "redman help COMMAND explains a command."));
-  app.require_subcommand(1);
-  app.option_defaults()->always_capture_default();
-  Run run;
-  add_commands(app, run, arguments.words);
   app.set_version_flag("--version", "", "Print the version and exit");
   app.set_help_all_flag("--help-all", "Help of every subcommand");
   std::vector<std::string> plugins;  // for the help; they are taken before

@@ -133,9 +133,9 @@ void add_robot(CLI::App& app, Run& run) {
       "robot", "Read the file of a robot (URDF, MJCF, .robot) and list what is dropped, changed and guessed");
   ImportFlags& f = flags->import;
   command->add_option("file", flags->file, "file to read, or the name of a robot")->required();
-  command->add_flag(
-      "--check", flags->check,
-      "simulate the robot alone and report joints that touch, do not settle or miss the ends of their range");
+  command->add_flag("--check", flags->check,
+                    "simulate the robot alone and report shapes that touch, and joints that do not settle or "
+                    "reach their limits");
   command->add_option("--out", flags->out, "write the robot to this .robot file");
   command->add_option("--format", f.format, "format of the file: auto, urdf, mjcf or robot");
   command->add_option("--name", f.name, "name of the robot; default: the name in the file");

@@ -385,9 +385,9 @@ void add_sweep(CLI::App& app, Run& run) {
   command->add_option("--jobs", flags->jobs, "runs at a time; 0: one for each core")->check(at_least(0));
   command
       ->add_option("--minutes", flags->minutes,
-                   "time after which runs are stopped, to be gone on with later; 0: no bound")
+                   "time after which runs are stopped; the same command continues them; 0: no bound")
       ->check(at_least(0));
-  command->add_option("--out", flags->out, "folder of the runs; the same command goes on with what is there");
+  command->add_option("--out", flags->out, "folder of the runs; the same command continues the runs in it");
   command->callback([&run, flags] { run = [flags] { return run_sweep(*flags); }; });
 }
 

@@ -31,7 +31,7 @@ def sweep(tasks: Words, algos: Words = "ppo_lag", seeds: Union[str, int, Iterabl
 
     seeds: their number, or each of them. options are those of task and algorithm for all runs; vary, {key: values}, makes a
     configuration of each value. jobs run at a time, 0: one for each core. minutes: time after which runs are stopped. The same
-    call goes on with what was stopped, in any way, and does nothing again that is done. A wrong setting is an ArgumentError
+    call continues the runs that were stopped, in any way, and repeats none that is complete. A wrong setting is an ArgumentError
     before anything starts. The folder has runs of the tool's form, and a table in sweep.md.
     """
     tool = tool_path()
