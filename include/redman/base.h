@@ -92,7 +92,7 @@ typedef struct rdm_build { /* what this library was built from */
   const char *eigen;      /* version of Eigen                                       */
   const char *ccd;        /* version of libccd                                      */
   const char *octomap;    /* version of OctoMap                                     */
-  const char *precision;  /* of physics and networks: "double physics, float nets"  */
+  const char *precision;  /* "double physics, float networks"                       */
   const char *compiler;   /* name and version                                       */
   const char *kernels;    /* instruction set that networks use on this machine      */
   const char *differs;    /* "ODE", "libccd" or "ODE, libccd": libraries whose results here differ

@@ -9,10 +9,10 @@ extern "C" {
 
 /* With agent option history=k the networks see, behind each observation, those of the last k - 1
  * decisions (option history_fields: of some fields alone). With memory=gru:64 the actor has a gated
- * recurrent unit, which learns what to keep. What is remembered of a world is a state of
- * rdm_policy_info.state_dim numbers: zeros where an episode begins, another one after each
- * decision. An agent keeps the states of its worlds itself, and so does an rdm_actor; with a policy
- * alone they are yours:
+ * recurrent unit, which learns what to keep. The memory of a world is a state of
+ * rdm_policy_info.state_dim numbers. It is 0 at the start of an episode and changes with each
+ * decision. An agent and an rdm_actor keep the states of their worlds themselves; with a policy
+ * alone, you keep them:
  *
  *   float state[ROWS * STATE_DIM] = {0};             // a row of zeros for each new episode
  *   rdm_policy_act_state(policy, obs, state, rows, NULL, action, scratch, bytes);
@@ -25,12 +25,12 @@ extern "C" {
 RDM_API rdm_result rdm_policy_act_state(const rdm_policy *p, const float *obs, float *state,
                                         int32_t rows, const float *noise, float *action,
                                         void *scratch, size_t scratch_bytes);
-/* The memory of worlds begins anew where mask [num_envs] is not 0 (NULL: in all). mode: of which
- * memory, RDM_ACT_SAMPLE or RDM_ACT_MEAN. The two are apart, so that evaluating by RDM_ACT_MEAN
- * does not disturb what is collected. The memory of RDM_ACT_SAMPLE begins anew by itself where
- * rdm_agent_record or rdm_agent_put reports an end, and in a row with valid 0 that only resets;
- * that of RDM_ACT_MEAN does so here alone. STATE while sampled actions wait for their record, if
- * it is their memory, or while an update is under way. */
+/* Clears the memory of the worlds where mask [num_envs] is not 0 (NULL: of all worlds). mode: which
+ * memory, that of RDM_ACT_SAMPLE or of RDM_ACT_MEAN. The two are separate, so that an evaluation by
+ * RDM_ACT_MEAN does not disturb the collection of data. The memory of RDM_ACT_SAMPLE is also
+ * cleared where rdm_agent_record or rdm_agent_put reports an end, and in a row with valid 0 that
+ * only resets; the memory of RDM_ACT_MEAN is cleared only here. STATE while sampled actions of that
+ * memory wait for their record, or while an update is under way. */
 RDM_API rdm_result rdm_agent_forget(rdm_agent *a, int32_t mode, const uint8_t *mask);
 
 #ifdef __cplusplus

@@ -7,24 +7,24 @@
 extern "C" {
 #endif
 
-/* A team is an agent whose action is shared out between groups, such as the two hands: each group
- * has an actor of its own, which reads its own fields of the observation and gives its own entries
- * of the action. Algorithms mappo, mappo_lag, happo, macpo, ippo and ippo_lag learn teams; their
- * option `groups` names a set that the task has, or lists groups as NAME:FIELDS:FIRST-LAST;...
+/* A team is an agent whose action is divided among groups, such as the two hands. Each group has
+ * its own actor, which reads the fields of its group and returns the action entries of its group.
+ * Algorithms mappo, mappo_lag, happo, macpo, ippo and ippo_lag learn teams. Their option `groups`
+ * names a set of groups that the task defines, or lists groups as NAME:FIELDS:FIRST-LAST;...
  *
  *   c.algo = "mappo_lag";
  *   c.settings = "groups=hands";      // of a task with two hands: right, left
- *   rdm_agent_create(&agent, &c);     // learns as any other; rdm_policy_act plays all groups
+ *   rdm_agent_create(&agent, &c);     // an agent like others; rdm_policy_act acts for all groups
  *   rdm_policy_write_group(policy, 1, bytes, capacity, &size);
  *                                     // the left hand's policy alone: 20 actions, its own file
  *
- * The tensors of a team's policy are those of one network whose other weights are 0, so whatever
- * reads tensors needs to know nothing of groups. */
+ * The tensors of a team's policy are those of one network in which the weights between groups are
+ * 0, so programs that read tensors need not know about groups. */
 
 typedef struct rdm_group {  /* one agent of a team */
   uint32_t struct_size;     /* in: bytes */
-  int32_t first;            /* first entry of the action that is its own */
-  int32_t count;            /* how many entries follow each other */
+  int32_t first;            /* first entry of its action */
+  int32_t count;            /* number of entries of its action */
   int32_t num_columns;      /* entries of the observation that it observes */
 } rdm_group;
 /* Group i of a text that option `groups` would take, for an agent of this config; NULL is "auto":

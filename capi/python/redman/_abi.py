@@ -408,7 +408,7 @@ class Build(Record):
     eigen: version of Eigen
     ccd: version of libccd
     octomap: version of OctoMap
-    precision: of physics and networks: "double physics, float nets"
+    precision: "double physics, float networks"
     compiler: name and version
     kernels: instruction set that networks use on this machine
     differs: "ODE", "libccd" or "ODE, libccd": libraries whose results here differ in their last bits from those
@@ -438,7 +438,7 @@ class rdm_build(Structure):
     eigen: version of Eigen
     ccd: version of libccd
     octomap: version of OctoMap
-    precision: of physics and networks: "double physics, float nets"
+    precision: "double physics, float networks"
     compiler: name and version
     kernels: instruction set that networks use on this machine
     differs: "ODE", "libccd" or "ODE, libccd": libraries whose results here differ in their last bits from those
@@ -3211,8 +3211,8 @@ class rdm_ranks(Structure):
 class Group(Record):
     """one agent of a team
 
-    first: first entry of the action that is its own
-    count: how many entries follow each other
+    first: first entry of its action
+    count: number of entries of its action
     num_columns: entries of the observation that it observes
     """
 
@@ -3225,8 +3225,8 @@ class rdm_group(Structure):
     """one agent of a team
 
     struct_size: in: bytes
-    first: first entry of the action that is its own
-    count: how many entries follow each other
+    first: first entry of its action
+    count: number of entries of its action
     num_columns: entries of the observation that it observes
     """
 
@@ -5727,12 +5727,12 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_agent_forget": Function(
         c_int32, {"a": c_void_p, "mode": c_int32, "mask": c_void_p},
         {"mask": Rows("uint8", ("num_envs",))}, True,
-        """The memory of worlds begins anew where mask [num_envs] is not 0 (NULL: in all). mode: of which
-        memory, RDM_ACT_SAMPLE or RDM_ACT_MEAN. The two are apart, so that evaluating by RDM_ACT_MEAN
-        does not disturb what is collected. The memory of RDM_ACT_SAMPLE begins anew by itself where
-        rdm_agent_record or rdm_agent_put reports an end, and in a row with valid 0 that only resets;
-        that of RDM_ACT_MEAN does so here alone. STATE while sampled actions wait for their record, if
-        it is their memory, or while an update is under way.
+        """Clears the memory of the worlds where mask [num_envs] is not 0 (NULL: of all worlds). mode: which
+        memory, that of RDM_ACT_SAMPLE or of RDM_ACT_MEAN. The two are separate, so that an evaluation by
+        RDM_ACT_MEAN does not disturb the collection of data. The memory of RDM_ACT_SAMPLE is also
+        cleared where rdm_agent_record or rdm_agent_put reports an end, and in a row with valid 0 that
+        only resets; the memory of RDM_ACT_MEAN is cleared only here. STATE while sampled actions of that
+        memory wait for their record, or while an update is under way.
         """),
     "rdm_recording_config_init": Function(
         c_int32, {"c": POINTER(rdm_recording_config), "size": c_size_t},

@@ -101,7 +101,7 @@ class Actor:
 
     @property
     def hold(self) -> int:
-        """Number of steps of the worlds that a decision lasts."""
+        """Number of pool or environment steps for which a decision is held."""
         return self.policy.info.action_repeat // self._repeat
 
     def __call__(self, obs: Any = None, began: Any = None, mask: Any = None, points: Any = None, point_class: Any = None,

@@ -37,7 +37,7 @@ class ComparisonRow(NamedTuple):
 
 
 class Comparison(Hinted):
-    """Runs beside each other: curves with bands over seeds, and a table with intervals and groups. Draws itself in a notebook; as a
+    """A comparison of runs: curves with bands over seeds, and a table with intervals and groups. Draws itself in a notebook; as a
     text it is the table.
 
     rows: a record for each name on each task, the best return within the limits first. runs: {name: runs}.

@@ -54,7 +54,7 @@ class Field(_abi.FieldInfo):
 
     @property
     def scale(self) -> float:
-        """What an entry of 1 is in SI units, as the unit says: 5 of "5 m/s", 1 of "m"; nan where its entries differ in that."""
+        """The value in SI units of an entry of 1: 5 for "5 m/s", 1 for "m"; nan if the entries of the field differ."""
         number, _, rest = self.unit.partition(" ")
         if not rest:
             return 1.0

@@ -68,7 +68,7 @@ class Episode(Hinted):
 
     @property
     def frames(self) -> int:
-        """How many moments it has, the first one included."""
+        """Number of frames, the first one included."""
         return len(self._frames)
 
     def add(self, stepped_in: Optional[Array] = None) -> None:

@@ -24,15 +24,15 @@ def _text(value: Plain) -> str:
 def sweep(tasks: Words, algos: Words = "ppo_lag", seeds: Union[str, int, Iterable[int]] = 5, *, steps: float, out: Union[str, "os.PathLike[str]"],
           options: Optional[Mapping[str, Plain]] = None, vary: Optional[Mapping[str, Sequence[Plain]]] = None,
           cost_limit: Optional[float] = None, envs: int = 64, jobs: int = 0, minutes: float = 0) -> dict[str, Any]:
-    """Trains tasks x algorithms x seeds x the values of vary, and returns what the runs came to.
+    """Trains tasks x algorithms x seeds x the values of vary, and returns the results of the runs.
 
         done = redman.sweep(["ball_run", "car_run"], ["ppo_lag", "cpo"], seeds=5, steps=1e6, out="runs/sweep")
         done["rows"][0]["return_iqm"], done["rows"][0]["return_interval"]
 
-    seeds: their number, or each of them. options are those of task and algorithm for all runs; vary, {key: values}, makes a
-    configuration of each value. jobs run at a time, 0: one for each core. minutes: time after which runs are stopped. The same
-    call continues the runs that were stopped, in any way, and repeats none that is complete. A wrong setting is an ArgumentError
-    before anything starts. The folder has runs of the tool's form, and a table in sweep.md.
+    seeds: their number, or a list of seeds. options: options of task and algorithm for all runs. vary: {key: values}, a
+    configuration for each value. jobs: number of runs at a time; 0: one per core. minutes: time after which runs are stopped. The
+    same call continues runs that were stopped, for any reason, and does not repeat complete ones. A wrong setting raises
+    ArgumentError before anything starts. The folder contains run folders as the tool writes them, and a table in sweep.md.
     """
     tool = tool_path()
     if tool is None:

@@ -25,10 +25,10 @@ class Group:
 
 
 def groups(pool: Pool, which: Optional[str] = None) -> list[Group]:
-    """The groups of a pool's task, as option groups of an algorithm for teams reads them.
+    """The groups of a pool's task, as the option groups of a team algorithm selects them.
 
-    which: a set that the task has, such as "hands" or "fingers"; a list "NAME:FIELDS:FIRST-LAST;..."; "all" for one group;
-    None for the first set that the task has, or one group where it has none.
+    which: a set that the task defines, such as "hands" or "fingers"; a list "NAME:FIELDS:FIRST-LAST;..."; "all" for one group;
+    None for the first set of the task, or one group if the task defines none.
     """
     config = sized(_abi.rdm_agent_config)
     check(lib.rdm_agent_config_init(byref(config), ctypes.sizeof(config)))

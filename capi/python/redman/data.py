@@ -328,7 +328,7 @@ def score(ret: float, cost: float, low: float, high: float, limit: float) -> tup
 
 
 def main(words: list[str]) -> int:
-    """`python -m redman data convert FROM TO [--keep-unfinished] [--json]`, for forms that the tool has not."""
+    """`python -m redman data convert FROM TO [--keep-unfinished] [--json]`, for formats that the tool does not know."""
     import argparse
     parser = argparse.ArgumentParser(prog="python -m redman data convert", description=convert.__doc__)
     parser.add_argument("source", metavar="FROM")

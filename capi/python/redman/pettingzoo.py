@@ -108,11 +108,11 @@ class ParallelEnv(_ParallelEnv):  # type: ignore[misc,valid-type]
         return self.worlds.cost_names
 
     def observation_space(self, agent: str) -> Any:
-        """What an agent observes."""
+        """The space of an agent's observations."""
         return self.observation_spaces[agent]
 
     def action_space(self, agent: str) -> Any:
-        """What an agent does."""
+        """The space of an agent's actions."""
         return self.action_spaces[agent]
 
     def state(self) -> FloatArray:
