@@ -20,9 +20,6 @@
 
 namespace rdm {
 
-// Rows that a network sees at a time.
-inline constexpr int32_t kPartRows = 256;
-
 // What checks of a state read: the numbers of a list that is being checked, and the bound on what a network may give.
 struct StateNumbers {
   const StateView<float>& list;

@@ -118,6 +118,22 @@ void Replay::draw(Stream& stream, int32_t count, int32_t* drawn) const {
   }
 }
 
+// What stands before such a row did not lead to it. Of a full ring the oldest row has nothing before it that is known.
+int32_t Replay::first_rows(int32_t* out) const {
+  int32_t count = 0;
+  for (int32_t env = 0; env < num_envs_; ++env) {
+    const int32_t begin = env * capacity_, rows = std::min(size_[env], capacity_);
+    const bool full = rows == capacity_;
+    const int32_t oldest = full ? (head_[env] + foretold_[env]) % capacity_ : -1;
+    for (int32_t at = 0; at < rows; ++at) {
+      const int32_t i = begin + at, before = begin + (at + capacity_ - 1) % capacity_;
+      if (!drawable_[i] || at == oldest) continue;
+      if ((!full && at == 0) || !drawable_[before] || discount_[before] == 0) out[count++] = i;
+    }
+  }
+  return count;
+}
+
 void Replay::visit(StateIo& io) {
   io.section("RPLY");
   for (int32_t env = 0; env < num_envs_; ++env) {

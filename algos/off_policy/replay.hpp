@@ -24,6 +24,9 @@ inline size_t count_of(int32_t n) {
 // Bound on the magnitudes of rewards and costs that are kept: targets of them stay finite.
 inline constexpr float kMaxReplayed = 1e12f;
 
+// Rows that a network sees at a time.
+inline constexpr int32_t kPartRows = 256;
+
 struct ReplayRow {
   const float* obs = nullptr;     // [obs_dim]
   const float* action = nullptr;  // [action_dim] within [-1, 1]
@@ -60,6 +63,8 @@ class Replay {
   float reward(int32_t i) const { return reward_[i]; }
   float discount(int32_t i) const { return discount_[i]; }
   int32_t capacity() const { return num_envs_ * capacity_; }
+  // Rows that can be drawn and begin an episode, as far as the memory goes back, to out [capacity()]; how many.
+  int32_t first_rows(int32_t* out) const;
   // Place i has this row: one that can be drawn, or else its observation alone.
   bool is(int32_t i, const ReplayRow& row, bool drawn) const;
   bool drawable(int32_t i) const { return drawable_[i] != 0; }

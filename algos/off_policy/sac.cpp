@@ -128,13 +128,13 @@ constexpr auto kSacPidRows = option_rows<SacPidOptions>(kSacRows, kPidRows, kRep
 
 }  // namespace
 
-constinit const AlgoRow kSac = off_policy_row<Sac>(
+constinit const AlgoRow kSac = replay_row<Sac>(
     "sac", "Soft actor-critic from a replay memory (Haarnoja et al. 2018); costs are only recorded", kSacRows,
     Costs::kNone);
-constinit const AlgoRow kSacLag = off_policy_row<Weighed<Sac, Lagrange>>(
+constinit const AlgoRow kSacLag = replay_row<Weighed<Sac, Lagrange>>(
     "sac_lag", "SAC with pessimistic cost critics and a multiplier for each limit, by dual ascent",
     kSacLagRows, Costs::kAny);
-constinit const AlgoRow kSacPid = off_policy_row<Weighed<Sac, PidRule>>(
+constinit const AlgoRow kSacPid = replay_row<Weighed<Sac, PidRule>>(
     "sac_pid", "SAC with pessimistic cost critics and a PID-controlled multiplier for each limit",
     kSacPidRows, Costs::kAny);
 

@@ -85,14 +85,14 @@ constexpr auto kTd3PidRows = option_rows<Td3PidOptions>(kTd3Rows, kPidRows, kRep
 
 }  // namespace
 
-constinit const AlgoRow kTd3 = off_policy_row<Td3>(
+constinit const AlgoRow kTd3 = replay_row<Td3>(
     "td3",
     "Twin delayed policy gradient from a replay memory (Fujimoto et al. 2018); costs are only recorded",
     kTd3Rows, Costs::kNone);
-constinit const AlgoRow kTd3Lag = off_policy_row<Weighed<Td3, Lagrange>>(
+constinit const AlgoRow kTd3Lag = replay_row<Weighed<Td3, Lagrange>>(
     "td3_lag", "TD3 with pessimistic cost critics and a multiplier for each limit, by dual ascent",
     kTd3LagRows, Costs::kAny);
-constinit const AlgoRow kTd3Pid = off_policy_row<Weighed<Td3, PidRule>>(
+constinit const AlgoRow kTd3Pid = replay_row<Weighed<Td3, PidRule>>(
     "td3_pid", "TD3 with pessimistic cost critics and a PID-controlled multiplier for each limit",
     kTd3PidRows, Costs::kAny);
 

@@ -204,7 +204,7 @@ class Bcq : public OffPolicy {
 
 }  // namespace
 
-constinit const AlgoRow kBcqLag = off_policy_row<Weighed<Bcq, Lagrange>>(
+constinit const AlgoRow kBcqLag = replay_row<Weighed<Bcq, Lagrange>>(
     "bcq_lag",
     "Q-learning among actions like recorded ones, with a multiplier for each limit (Fujimoto et al. 2019)",
     kBcqRows, Costs::kAny);

@@ -153,7 +153,7 @@ class Cpq : public Sac {
 
 }  // namespace
 
-constinit const AlgoRow kCpq = off_policy_row<Cpq>(
+constinit const AlgoRow kCpq = replay_row<Cpq>(
     "cpq",
     "Q-learning to which what is not safe or not recorded is worth nothing, from a data set (Xu et al. 2022)",
     kCpqRows, Costs::kAny);

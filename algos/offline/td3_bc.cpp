@@ -71,7 +71,7 @@ constexpr auto kTd3BcLagRows =
 
 }  // namespace
 
-constinit const AlgoRow kTd3BcLag = off_policy_row<Weighed<Td3Bc, Lagrange>>(
+constinit const AlgoRow kTd3BcLag = replay_row<Weighed<Td3Bc, Lagrange>>(
     "td3_bc_lag",
     "TD3 near recorded actions, from a data set alone, with a multiplier for each limit (Fujimoto, Gu 2021)",
     kTd3BcLagRows, Costs::kAny);

@@ -19,20 +19,6 @@ Numbers sampled(const PlainNet& actor, const Numbers& obs, const Numbers& z, siz
   return a;
 }
 
-// The limit on an episode's sum as a value of its first decision, where costs are spread evenly: values go on for ever
-// where nothing terminated an episode.
-double as_value(double limit, const Recorded& r, double discount) {
-  double length = 0, values = 0;
-  for (size_t i = 0, n = 0; i < r.reward.size(); ++i) {
-    ++n;
-    if (i + 1 < r.reward.size() && r.episode[i + 1] == r.episode[i]) continue;
-    length += static_cast<double>(n);
-    values += (r.terminated[i] ? 1 - std::pow(discount, n) : 1) / (1 - discount);
-    n = 0;
-  }
-  return limit * values / length;
-}
-
 struct Branches {
   int safe = 0, unsafe = 0, lifted = 0;
 };

@@ -37,7 +37,7 @@ struct Plain {
 
   explicit Plain(Agent& a, uint64_t seed)
       : agent(a),
-        memory(static_cast<OffPolicy&>(a).replay()),
+        memory(static_cast<ReplayAgent&>(a).replay()),
         draws(seed, 1 << 20, Purpose::kMinibatch),
         noise(seed, (1 << 20) + 1, Purpose::kMinibatch),
         actor(net_of(a, "actor")) {

@@ -1,4 +1,5 @@
 // The replay memory: what stands behind a row, what is drawn, and what a saved ring is.
+#include <algorithm>
 #include <map>
 
 #include "agents.hpp"
@@ -89,6 +90,34 @@ TEST(Replay, WhatStandsBehindARowIsWhatFollowed) {
     if (capacity >= 30) {
       EXPECT_GT(m.replay.rows(), 10);
     }
+  }
+}
+
+// Of a ring that has gone round too: episodes of three decisions, every other one ended by time.
+TEST(Replay, TellsWhichRowsBeginEpisodes) {
+  Memory m(2, 40);
+  for (int number = 0; number < 90; ++number) {
+    for (int32_t env = 0; env < 2; ++env) {
+      const auto decision = static_cast<float>(number);
+      const bool last = number % 3 == 2, by_time = number % 6 == 5;
+      m.push(env, decision, last && !by_time ? 0 : 0.9f);
+      if (by_time)
+        m.end(env, decision + 0.5f);
+      else
+        m.follow(env, decision + 1);
+    }
+    std::vector<int32_t> list(size_of(m.replay.capacity())), wanted;
+    list.resize(size_of(m.replay.first_rows(list.data())));
+    // Of a full ring it may be unknown what stood before the oldest row.
+    const auto begins = [&](int32_t i) { return static_cast<int>(m.replay.obs(i)[1]) % 3 == 0; };
+    EXPECT_TRUE(std::all_of(list.begin(), list.end(), begins)) << number;
+    float oldest = number < 12 ? -1.0f : 1e9f;
+    for (const int32_t i : m.drawable()) oldest = std::min(oldest, m.replay.obs(i)[1]);
+    const auto known = [&](int32_t i) { return m.replay.obs(i)[1] > oldest; };
+    for (const int32_t i : m.drawable())
+      if (begins(i) && known(i)) wanted.push_back(i);
+    list.erase(std::remove_if(list.begin(), list.end(), [&](int32_t i) { return !known(i); }), list.end());
+    EXPECT_EQ(list, wanted) << number;
   }
 }
 

@@ -172,6 +172,20 @@ inline Recorded noise(int32_t episodes, int32_t obs_dim, int32_t action_dim, int
   return r;
 }
 
+// The limit on an episode's sum as a value of its first decision, where costs are spread evenly: values go on for ever
+// where nothing terminated an episode.
+inline double as_value(double limit, const Recorded& r, double discount) {
+  double length = 0, values = 0;
+  for (size_t i = 0, n = 0; i < r.reward.size(); ++i) {
+    ++n;
+    if (i + 1 < r.reward.size() && r.episode[i + 1] == r.episode[i]) continue;
+    length += static_cast<double>(n);
+    values += (r.terminated[i] ? 1 - std::pow(discount, n) : 1) / (1 - discount);
+    n = 0;
+  }
+  return limit * values / length;
+}
+
 inline AgentSetup learner(const char* algo, const Recorded& r, const char* replay_rows, int32_t envs = 1) {
   AgentSetup s(
       algo, r.obs_dim, r.action_dim, envs,
@@ -183,7 +197,7 @@ inline AgentSetup learner(const char* algo, const Recorded& r, const char* repla
 }
 
 inline const Replay& memory_of(Agent& a) {
-  return static_cast<OffPolicy&>(a).replay();
+  return static_cast<ReplayAgent&>(a).replay();
 }
 
 // A learner of one small hidden layer and large steps, whose every step is told beside the same in double.
