@@ -12,7 +12,7 @@ namespace {
 const AlgoRow* const kRows[] = {
     &kPpo, &kTrpo,   &kPpoLag, &kTrpoLag, &kCppoPid, &kCpo,      &kPcpo,     &kFocops, &kP3o,    &kIpo,
     &kPdo, &kRcpo,   &kCup,    &kCrpo,    &kMappo,   &kMappoLag, &kHappo,    &kMacpo,  &kIppo,   &kIppoLag,
-    &kTd3, &kTd3Lag, &kTd3Pid, &kSac,     &kSacLag,  &kSacPid,   &kTd3BcLag, &kCpq,    &kBcqLag,
+    &kTd3, &kTd3Lag, &kTd3Pid, &kSac,     &kSacLag,  &kSacPid,   &kTd3BcLag, &kCpq,    &kBcqLag, &kCOptiDice,
 };
 
 }  // namespace

@@ -11,7 +11,7 @@ extern const AlgoRow kPpo, kTrpo, kPpoLag, kTrpoLag, kCppoPid, kCpo, kPcpo, kFoc
     kCup, kCrpo;
 extern const AlgoRow kMappo, kMappoLag, kHappo, kMacpo, kIppo, kIppoLag;
 extern const AlgoRow kTd3, kTd3Lag, kTd3Pid, kSac, kSacLag, kSacPid;
-extern const AlgoRow kTd3BcLag, kCpq, kBcqLag;
+extern const AlgoRow kTd3BcLag, kCpq, kBcqLag, kCOptiDice;
 
 // The row of an algorithm whose class is T.
 template <class T, class Rows>
