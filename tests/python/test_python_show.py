@@ -245,7 +245,7 @@ class Drawn(unittest.TestCase):
             policy = redman.Policy.trained(TASK)
             self.assertIsNone(policy._repr_html_())
             self.assertEqual(policy._repr_png_()[:4], b"\x89PNG")
-            with self.assertRaisesRegex(redman.UnsupportedError, "a .html file is made by the command redman"):
+            with self.assertRaisesRegex(redman.UnsupportedError, "a .html file needs the command redman"):
                 policy.render("a.html")
             self.assertIn("<table>", self.runs[0]._repr_html_())
 

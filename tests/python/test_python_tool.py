@@ -52,7 +52,7 @@ class Command(unittest.TestCase):
         self.put("scripts", SCRIPT)
         done = self.run_it(command=[sys.executable, "-c", "import redman\nredman.Policy.trained('bandit').export('p.onnx')"],
                            REDMAN_TOOL="")
-        self.assertRegex(done.stderr, "UnsupportedError: a .onnx file is made by the command redman, which is not")
+        self.assertRegex(done.stderr, "UnsupportedError: a .onnx file needs the command redman, which was not found")
 
 
 if __name__ == "__main__":

@@ -202,10 +202,10 @@ class Agent(Taught, Hinted):
         return action
 
     def forget(self, mode: str = "sample", mask: Any = None) -> None:
-        """The memory of worlds begins anew where mask [num_envs] is true; None: in all.
+        """Clears the memory of the worlds in which mask [num_envs] is true; None: of all.
 
-        The memory of sampled actions does so by itself where record reports an end; that of the mean (mode "mean") is apart
-        from it, so that evaluating disturbs nothing, and does so here alone.
+        record clears the memory of sampled actions when an episode ends. The memory of mean actions (mode "mean") is separate,
+        so that evaluation does not disturb it, and only this call clears it.
         """
         if mode not in _MODES:
             raise ArgumentError(f"mode: {mode!r} is none of {', '.join(_MODES)}")

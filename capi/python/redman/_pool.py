@@ -107,7 +107,7 @@ class Guard(_abi.Guard):
 
 
 class Sensors:
-    """What worlds see (option modality): arrays in the library's memory, None where a modality is off."""
+    """Pictures, clouds and voxels of the worlds (option modality): arrays in the library's memory, None where a modality is off."""
 
     rgb: Optional[npt.NDArray[np.uint8]]
     depth: Optional[FloatArray]

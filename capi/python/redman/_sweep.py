@@ -36,7 +36,8 @@ def sweep(tasks: Words, algos: Words = "ppo_lag", seeds: Union[str, int, Iterabl
     """
     tool = tool_path()
     if tool is None:
-        raise UnsupportedError("a sweep is made by the command redman, which is not in this package, not on PATH, nor where REDMAN_TOOL says")
+        raise UnsupportedError("a sweep needs the command redman, which was not found: it is not in this package, it is not on PATH, and "
+                               "REDMAN_TOOL is not set")
     listed = f"0..{seeds - 1}" if isinstance(seeds, int) else _joined(seeds)
     words = ["sweep", "--json", "--tasks", _joined(tasks), "--algos", _joined(algos), "--seeds", listed, "--steps", repr(float(steps)),
              "--out", os.fspath(out), "--envs", str(envs), "--jobs", str(jobs), "--minutes", repr(float(minutes))]

@@ -51,8 +51,8 @@ def begin(arguments: Iterator[str], folder: Path, told: bool) -> None:
     what it says of the teacher goes to stderr."""
     tool = tool_path()
     if tool is None:
-        raise UnsupportedError("from_: this teacher acts in the command redman, which is not in this package, not on PATH, nor "
-                               "where REDMAN_TOOL says")
+        raise UnsupportedError("from_: this teacher needs the command redman, which was not found: it is not in this package, it is not on "
+                               "PATH, and REDMAN_TOOL is not set")
     if os.name != "posix":
         raise UnsupportedError("from_: this teacher acts in the command: redman train --from")
     said: list[str] = []

@@ -1,4 +1,4 @@
-"""Groups of a team: which entries of observations and actions belong to whom."""
+"""Groups of a team: which entries of observations and actions belong to each group."""
 from __future__ import annotations
 
 import ctypes

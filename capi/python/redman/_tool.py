@@ -59,7 +59,8 @@ def run_tool(*arguments: str, why: str) -> None:
     """Runs the tool; its message becomes the text of the error."""
     tool = tool_path()
     if tool is None:
-        raise UnsupportedError(f"{why} is made by the command redman, which is not in this package, not on PATH, nor where REDMAN_TOOL says")
+        raise UnsupportedError(f"{why} needs the command redman, which was not found: it is not in this package, it is not on PATH, and "
+                               "REDMAN_TOOL is not set")
     done = subprocess.run([tool, *arguments], capture_output=True, text=True, stdin=subprocess.DEVNULL)
     if done.returncode:
         said = (done.stderr.strip() or done.stdout.strip()).splitlines()

@@ -64,8 +64,8 @@ class Window(Hinted):
     def __init__(self, arguments: Sequence[str], *, fed: bool, page: Page, keep: Any = None) -> None:
         tool = tool_path()
         if tool is None:
-            raise UnsupportedError("view: windows are made by the command redman, which is not in this package, not on PATH, nor where "
-                                   "REDMAN_TOOL says")
+            raise UnsupportedError("view: a window needs the command redman, which was not found: it is not in this package, it is not on PATH, "
+                                   "and REDMAN_TOOL is not set")
         words = [tool, "view", *(["--feed"] if fed else []), *arguments, "--port", str(page.port), *(["--open"] if page.browser else []),
                  *(["--paused"] if page.paused else [])]
         if page.record is not None and not fed:
