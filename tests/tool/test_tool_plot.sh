@@ -26,4 +26,13 @@ check 'an algorithm is named once' 'class="legend"' all.svg 2
 check 'the limits' 'class="level"' all.svg 2
 "$tool" plot ball_run.* --each --out each.svg --json > each || exit 1
 check 'lines of each' '"lines":3' each 1
+# A point is the mean of the epochs in its interval: returns of 9 and 11 in turn are drawn as 10.
+cp -r ball_run.ppo.0 turns
+awk -F, -v OFS=, 'NR == 1 { print; for (i = 1; i <= NF; ++i) at[$i] = i }
+  NR == 2 { for (k = 1; k <= 1200; ++k) { $at["TotalEnvSteps"] = 10 * k; $at["Metrics/EpRet"] = 10 + (k % 2 ? 1 : -1); print } }' \
+  ball_run.ppo.0/progress.csv > turns/progress.csv
+"$tool" plot turns --out turns.svg --json > turns.json || exit 1
+line=$(grep -o '<path class="line s[^>]*' turns.svg | head -n 1 | grep -o 'd="[^"]*')
+points=$(echo "$line" | grep -o '[0-9.]* [0-9.]*' | wc -l) heights=$(echo "$line" | grep -o '[0-9.]* [0-9.]*' | cut -d' ' -f2 | sort -u | wc -l)
+[ "$points" -eq 120 ] && [ "$heights" -eq 1 ] || { echo "means of epochs: $points points of $heights heights: $line"; failed=1; }
 exit "$failed"
