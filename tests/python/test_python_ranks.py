@@ -81,7 +81,7 @@ class Together(unittest.TestCase):
             self.assertIsNotNone(caught.exception.__cause__)
 
     def test_errors_say_what_may_be(self):
-        with self.assertRaisesRegex(redman.ArgumentError, "rank: 2 is not in 0 to 1"):
+        with self.assertRaisesRegex(redman.ArgumentError, "rank: 2 is not between 0 and 1"):
             redman.Ranks(2, 2, lambda message: [message])
         with self.assertRaisesRegex(redman.UsageError, "comm.allgather"):
             redman.Ranks(0, 2)

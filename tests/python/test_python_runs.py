@@ -302,10 +302,10 @@ class Going(Folders):
         self.assertGreater(run.evaluate(episodes=8).return_mean, 350)  # 415 of the bundled policy, -100 of none
         self.assertGreater(redman.train(TASK, **SMALL, from_=run).evaluate(episodes=8).return_mean, 350)
         recording = redman.Recording(obs_dim=7, action_dim=2, capacity=16)
-        for wrong, words in (({"from_": "random"}, "nothing to learn"), ({"teach": {"clone_epochs": 3}}, "from whom"),
+        for wrong, words in (({"from_": "random"}, "this is no teacher"), ({"teach": {"clone_epochs": 3}}, "needs a teacher: give from_"),
                              ({"from_": trained, "teach": {"dagger": 2}}, "a word or a path"),
-                             ({"from_": trained, "teach": {"noise": 0.1}}, "of a teacher that acts"),
-                             ({"from_": "demo", "teach": {"beta": 2}}, "not in 0 to 1"),
+                             ({"from_": trained, "teach": {"noise": 0.1}}, "needs a teacher that acts"),
+                             ({"from_": "demo", "teach": {"beta": 2}}, "not between 0 and 1"),
                              ({"from_": "demo", "reward": lambda rows: rows.reward}, "does not know reward="),
                              ({"from_": trained, "teach": {"clone_epoch": 2}}, "nearest is clone_epochs"),
                              ({"from_": trained, "teach": {"start_share": 0.5}}, "need a recording"),

@@ -137,7 +137,7 @@ class Files(unittest.TestCase):
             episode.render(self.folder / "a.png", width=64, height=48, **extra)
             data = (self.folder / "a.png").read_bytes()
             self.assertEqual((data[:4], int.from_bytes(data[16:20], "big")), (b"\x89PNG", width))
-        with self.assertRaisesRegex(redman.ArgumentError, "step: 5 is not in 0 to 4"):
+        with self.assertRaisesRegex(redman.ArgumentError, "step: 5 is not between 0 and 4"):
             episode.render(self.folder / "a.png", step=5)
         with self.assertRaisesRegex(redman.ArgumentError, "camera: 'frnt' is none of .*nearest is front"):
             episode.render(self.folder / "a.png", camera="frnt")

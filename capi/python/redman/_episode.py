@@ -102,7 +102,7 @@ class Episode(Hinted):
             film(Path(path), self.pictures(range(self.frames), view, width, height, look), 1 / self._seconds)
         else:
             if step is not None and not 0 <= step < self.frames:
-                raise ArgumentError(f"step: {step} is not in 0 to {self.frames - 1}")
+                raise ArgumentError(f"step: {step} is not between 0 and {self.frames - 1}")
             moments = self.moments(strip) if step is None else [step]
             Path(path).write_bytes(_png.row(list(self.pictures(moments, view, width, height, look))))
 

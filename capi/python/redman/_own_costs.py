@@ -89,7 +89,7 @@ class Rows:
             raise NotFoundError(f"field {name}: {self.pool.task.name} has none of that name{nearest(name, fields)}")
         scale = fields[name].scale
         if math.isnan(scale):
-            raise ArgumentError(f"field {name}: its entries differ in unit ({fields[name].unit}): take "
+            raise ArgumentError(f"field {name}: its entries have different units ({fields[name].unit}): take "
                                 f"rows.obs[:, rows.pool.fields[{name!r}].slice]")
         part: FloatArray = self.obs[:, fields[name].slice]
         return part if scale == 1 else part * np.float32(scale)
@@ -117,7 +117,7 @@ class Own:
     def __init__(self, reward: Union[None, RowFunction, str], costs: Optional[Costs], where: str = "") -> None:
         self.where = where  # whose they are, where they were read
         if reward is not None and not callable(reward) and not isinstance(reward, str):
-            raise UsageError(f"reward: a function of redman.Rows, not {reward!r}")
+            raise UsageError(f"reward: it must be a function of redman.Rows, not {reward!r}")
         self.reward = reward
         self.costs = None if costs is None else _by_name(costs)
         self._paths: dict[str, Optional[str]] = {}  # of functions that were not imported yet, by what they are
@@ -162,7 +162,7 @@ class Own:
         """Replaces functions of the folder by those that were given."""
         for what, mine, theirs in (("reward", self.reward, own.reward), ("costs", self.costs, own.costs)):
             if theirs is not None and mine is None:
-                raise UsageError(f"{self.where}: it learns the task's own {what}, not {what}= of yours")
+                raise UsageError(f"{self.where}: the run learns the task's own {what}, so that {what}= cannot replace it")
         if own.reward is not None:
             self.reward = own.reward
             self._paths.pop("reward", None)
@@ -184,7 +184,7 @@ class Own:
         for what, path in list(self._paths.items()):
             if path is None:
                 said = "reward=function" if what == "reward" else f"costs={{{what[5:]!r}: function, ...}}"
-                raise UsageError(f"{self.where}: its {what} was a function that no module has, as a lambda: say {said}")
+                raise UsageError(f"{self.where}: its {what} was a function that cannot be imported, such as a lambda: give {said}")
             function = thing_at(path, f"{self.where}: its {what}")
             if what == "reward":
                 self.reward = function
@@ -210,7 +210,7 @@ class Own:
             what = f"costs[{name!r}]"
             cost[:, k] = rows.costs[function] if isinstance(function, str) else _values(what, function, rows, lost)
             if cost[:, k].min() < 0:
-                raise ArgumentError(f"{what}: it gave {cost[:, k].min():g}: a cost is not below 0")
+                raise ArgumentError(f"{what}: it returned {cost[:, k].min():g}, but a cost must not be below 0")
         return reward, cost
 
     def rollout(self, agent: Agent, pool: Pool) -> Epoch:
@@ -275,19 +275,19 @@ def _later(rows: Rows) -> Any:
 def _by_name(costs: Costs) -> dict[str, Union[RowFunction, str]]:
     listed: Any = costs
     if callable(listed) or isinstance(listed, str) or not hasattr(listed, "__iter__"):
-        raise UsageError(f"costs: a dict of functions by name, costs={{\"fast\": function}}, not {costs!r}")
+        raise UsageError(f"costs: it must be a dict of functions by name, such as costs={{\"fast\": function}}, not {costs!r}")
     if not isinstance(listed, Mapping):
         named = [getattr(cost, "__name__", "<") for cost in listed]
         if any("<" in name for name in named):
-            raise UsageError("costs: a list of functions that have names; of others a dict, costs={\"fast\": function}")
+            raise UsageError("costs: every function of a list needs a name: give the others in a dict, costs={\"fast\": function}")
         listed = dict(zip(named, listed))
     if not listed:
-        raise UsageError("costs: one or more; without costs there is algo=\"ppo\"")
+        raise UsageError("costs: give at least one cost; algo=\"ppo\" learns without costs")
     for name, cost in listed.items():
         if not isinstance(name, str) or not name or set(name) & set("=,/\n"):
-            raise UsageError(f"costs: {name!r} is no name of a cost: letters, digits and _")
+            raise UsageError(f"costs: {name!r} is not a name: use letters, digits and _")
         if not callable(cost) and not isinstance(cost, str):
-            raise UsageError(f"costs[{name!r}]: a function of redman.Rows, or the name of a cost of the task, not {cost!r}")
+            raise UsageError(f"costs[{name!r}]: it must be a function of redman.Rows or the name of a cost of the task, not {cost!r}")
     return dict(listed)
 
 
@@ -295,7 +295,7 @@ def _values(what: str, function: Any, rows: Rows, lost: Array) -> FloatArray:
     """[n] the result of a function; 0 where a world diverged and the result is not finite."""
     given = np.asarray(function(rows))
     if given.shape not in ((), (rows.n,)) or given.dtype.kind not in "biuf":
-        raise ArgumentError(f"{what}: it gave {given.dtype} of shape {given.shape}, not a number for each of {rows.n} worlds: "
+        raise ArgumentError(f"{what}: it returned {given.dtype} of shape {given.shape}, but must return one number for each of {rows.n} worlds: "
                             f"({rows.n},)")
     out = np.empty(rows.n, np.float32)
     out[...] = given
@@ -303,6 +303,6 @@ def _values(what: str, function: Any, rows: Rows, lost: Array) -> FloatArray:
     if wrong.any():
         out[wrong & lost] = 0
         if (wrong & ~lost).any():
-            raise ArgumentError(f"{what}: it gave {out[wrong & ~lost][0]} in world {int(np.flatnonzero(wrong & ~lost)[0])}")
+            raise ArgumentError(f"{what}: it returned {out[wrong & ~lost][0]} in world {int(np.flatnonzero(wrong & ~lost)[0])}")
     return out
 

@@ -104,11 +104,11 @@ class Task:
 
     def judge(self, w: Worlds) -> Any:
         """After a control step: a Verdict, or the rewards [n] alone. w.step [n] counts from 1."""
-        raise NotImplementedError(f"{type(self).__name__}.judge: it gives the reward")
+        raise NotImplementedError(f"{type(self).__name__}.judge must be defined: it returns the reward")
 
     def observe(self, w: Worlds) -> Any:
         """The observations: a dict by field, a sequence in the order of `fields`, or one array [n][entries]."""
-        raise NotImplementedError(f"{type(self).__name__}.observe: it gives the observation")
+        raise NotImplementedError(f"{type(self).__name__}.observe must be defined: it returns the observation")
 
     def __init__(self) -> None:
         """No arguments: the library makes one for each pool."""
@@ -166,7 +166,7 @@ class RowTask(Task):
     def step(self, w: Worlds, action: Any) -> Any:
         """Computes the next state of the worlds from clipped actions [n][action_dim]; returns a Verdict, or the rewards [n]
         alone."""
-        raise NotImplementedError(f"{type(self).__name__}.step: it makes the next state and gives the reward")
+        raise NotImplementedError(f"{type(self).__name__}.step must be defined: it makes the next state and returns the reward")
 
     def control(self, w: Worlds, action: Any) -> None:
         """Keeps the action for step."""
@@ -189,9 +189,9 @@ class _Description:
         self.made, self.made_of = list[Task](), dict[Any, int]()  # a task for each choice of options, and its place there
         self.where = kind.__name__
         if not isinstance(kind.action_dim, int) or kind.action_dim < 1:
-            raise UsageError(f"{self.where}.action_dim: how many entries an action has, not {kind.action_dim!r}")
+            raise UsageError(f"{self.where}.action_dim: it must be the number of entries of an action, not {kind.action_dim!r}")
         if not kind.fields:
-            raise UsageError(f"{self.where}.fields: what an observation has, as {{\"position\": (3, \"m\")}}")
+            raise UsageError(f"{self.where}.fields: it is empty: give the fields of the observation, such as {{\"position\": (3, \"m\")}}")
         self.fields = {name: self._field(name, row) for name, row in kind.fields.items()}
         self.width = sum(count for count, *_ in self.fields.values())
         self.costs = self._costs()
@@ -202,7 +202,7 @@ class _Description:
     def _field(self, name: str, row: Any) -> tuple[int, str, float, float]:
         listed = [row] if isinstance(row, int) else list(row)
         if not listed or len(listed) not in (1, 2, 4) or not isinstance(listed[0], int):
-            raise UsageError(f"{self.where}.fields[{name!r}]: a count, (count, unit) or (count, unit, low, high), not {row!r}")
+            raise UsageError(f"{self.where}.fields[{name!r}]: it must be a count, (count, unit) or (count, unit, low, high), not {row!r}")
         low, high = (listed[2], listed[3]) if len(listed) == 4 else (0.0, 0.0)
         return listed[0], str(listed[1]) if len(listed) > 1 else "1", float(low), float(high)
 

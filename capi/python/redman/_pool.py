@@ -341,7 +341,7 @@ class Pool(Hinted):
                     raise UsageError(f"seeds: a whole number, one for each world, or None, not {seeds!r}") from None
             wrong = [seed for seed in listed if not 0 <= seed < 1 << 64]
             if wrong:
-                raise ArgumentError(f"seeds: {wrong[0]} is not in 0 to 2^64 - 1")
+                raise ArgumentError(f"seeds: {wrong[0]} is not between 0 and 2^64 - 1")
             table = _abi.FUNCTIONS["rdm_pool_reset"].rows["seeds"]
             rows = given(np.array(listed, np.uint64), table, self._lengths, "seeds")
         chosen = self._mask(mask)

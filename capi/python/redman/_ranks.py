@@ -32,7 +32,7 @@ class Ranks:
 
     def __init__(self, rank: int, ranks: int, gather: Optional[Gather] = None, swap: Optional[Swap] = None) -> None:
         if not 0 <= rank < ranks:
-            raise ArgumentError(f"rank: {rank} is not in 0 to {ranks - 1}")
+            raise ArgumentError(f"rank: {rank} is not between 0 and {ranks - 1}")
         if gather is None and ranks > 1:
             raise UsageError("gather: how messages of several ranks are exchanged, as comm.allgather of mpi4py")
         self.rank, self.ranks = rank, ranks

@@ -58,13 +58,13 @@ class Teach:
             teach._set(key, value)
         if teacher is None and not teach.settings["pretrain"]:
             if settings:
-                raise UsageError("teach: from whom? from_=a policy, a run folder, a recording (.npz), or \"demo\"")
+                raise UsageError("teach: it needs a teacher: give from_= a policy, a run folder, a recording (.npz), or \"demo\"")
             return None
         if hasattr(teacher, "policy") and hasattr(teacher, "env_steps"):  # a run
             teach.teacher = teacher.policy
         word = teacher if isinstance(teacher, str) else ""
         if word in ("zero", "hold", "random"):
-            raise ArgumentError(f"from_={word!r}: there is nothing to learn from this")
+            raise ArgumentError(f"from_={word!r}: this is no teacher: give a policy, a run folder, a recording (.npz), or \"demo\"")
         demo = word == "demo" or str(teacher).endswith(".demo")
         teach.acts = bool(demo or teach.settings["pretrain"] or teach.settings["dagger"])
         if teach.acts:
@@ -72,13 +72,13 @@ class Teach:
             return teach
         odd = [key for key in settings or {} if key in _ACTING]
         if odd:
-            raise UsageError(f"teach: {odd[0]} is of a teacher that acts: from_=\"demo\", a .demo file, or teach={{\"dagger\": 2}}")
+            raise UsageError(f"teach: {odd[0]} needs a teacher that acts: give from_=\"demo\", a .demo file, or teach={{\"dagger\": 2}}")
         if _is_recording(teacher):
             teach.recording = teacher if isinstance(teacher, Recording) else Recording.load(teacher)
             teach.said = "a recording" if isinstance(teacher, Recording) else os.fspath(teacher)
         else:
             if word == "trained" and task is None:
-                raise UsageError("from_=\"trained\": say which task")
+                raise UsageError("from_=\"trained\": the task is missing: give task=")
             teach.policy = policy_of(teach.teacher, task or "")
             origin = teach.policy.origin
             named = isinstance(teacher, (str, os.PathLike))
@@ -101,7 +101,7 @@ class Teach:
         if key == "start_share":
             first, last = value if isinstance(value, (tuple, list)) else (value, value)
             if not (0 <= first <= 1 and 0 <= last <= 1):
-                raise ArgumentError(f"teach: start_share: {value!r} is no share of 0 to 1, or a pair of such")
+                raise ArgumentError(f"teach: start_share: {value!r} is not a share from 0 to 1 or a pair of shares")
             self.settings.update(start_share=float(first), start_share_end=float(last))
         elif isinstance(_SETTINGS[key], bool):
             self.settings[key] = bool(value)
@@ -111,7 +111,7 @@ class Teach:
         else:
             most = _MOST.get(key, 10.0)
             if not 0 <= float(value) <= most:
-                raise ArgumentError(f"teach: {key}: {value!r} is not in 0 to {most}")
+                raise ArgumentError(f"teach: {key}: {value!r} is not between 0 and {most}")
             self.settings[key] = float(value)
 
     @property

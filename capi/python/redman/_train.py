@@ -361,7 +361,7 @@ def settings_of_folder(folder: FolderPath, own: Optional[Own] = None) -> Setting
     load_kept(config, where)
     if own is not None:
         if written is None:
-            raise UsageError(f"{where}: it learns the task's own costs and reward, not costs= or reward= of yours")
+            raise UsageError(f"{where}: the run learns the task's own costs and reward, so that costs= and reward= cannot replace them")
         settings.own = written.given(own)
     return settings
 
