@@ -228,14 +228,15 @@ page() {
   echo "# $1"
   echo
   table "$2"
+  [ -z "${4:-}" ] || [ ! -e "$results/$4" ] || { echo; echo "![Return, cost and success over control steps: the mean of each algorithm's seeds]($4)"; }
   note
   [ -n "${3:-}" ] || return 0
   together "$2"
   [ -z "$(means "$3")" ] || { echo; echo "## 100 M steps"; echo; table "$3"; }
 }
-page "Table 1" table1 long > "$results/table1.md"
-page "Table 1, with costs of commanded targets" command command_long > "$results/command.md"
-page "Fig. 7" fig7 > "$results/fig7.md"
+page "Table 1" table1 long fig6.svg > "$results/table1.md"
+page "Table 1, with costs of commanded targets" command command_long command.svg > "$results/command.md"
+page "Fig. 7" fig7 "" fig7.svg > "$results/fig7.md"
 { page "With a second limit" second; echo; echo "## With costs of commanded targets"; echo; table command_second; } > "$results/second.md"
 {
   echo "# Learning under a shield"

@@ -175,7 +175,6 @@ done > "$results/runs.csv.new"
 } > "$results/runs.csv.part"
 rm "$results/runs.csv.new"
 mv "$results/runs.csv.part" "$results/runs.csv"
-bash "$root/examples/paper_report.sh" "$results"
 
 # drawn PART PICTURE: the curves of the runs of a part that are here.
 drawn() {
@@ -187,5 +186,6 @@ drawn() {
 drawn table1 fig6.svg
 drawn fig7 fig7.svg
 drawn shield shield.svg
+bash "$root/examples/paper_report.sh" "$results"
 (cd "$out" && find . -name config.json -o -name progress.csv -o -name policy.rdm | sort |
   tar --create --files-from - --owner=0 --group=0 --numeric-owner --mtime=@0 --mode=0644 | gzip -n) > "$out/redman-runs.tar.gz"
