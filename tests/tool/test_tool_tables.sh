@@ -9,7 +9,7 @@ lost=$(bash cmake/tables.sh "$tool" check)
 results=examples/results
 again=$(mktemp -d)
 trap 'rm -rf "$again"' EXIT
-cp "$results/runs.csv" "$again"
+cp "$results/runs.csv" "$results"/*.svg "$again"  # a page shows the curves that stand beside it
 REDMAN=$tool bash examples/paper_report.sh "$again"
 for table in table1 command fig7 second shield claims short; do
   cmp "$again/$table.md" "$results/$table.md" || lost="$lost $results/$table.md is not what its runs.csv makes"
