@@ -32,10 +32,9 @@ void compare(const char* cost_limit, Branches& branches) {
   const AgentPtr a = s.make();
   a->learn(r.rows(), 0);
   PlainNet actor = net_of(*a, "actor"), encoder = net_of(*a, "action_encoder"),
-           decoder = net_of(*a, "action_decoder"),
-           q[4] = {net_of(*a, "reward_q1"), net_of(*a, "reward_q2"), net_of(*a, "cost0_q1"),
-                   net_of(*a, "cost0_q2")};
-  PlainNet slow[4] = {q[0], q[1], q[2], q[3]};
+           decoder = net_of(*a, "action_decoder");
+  PlainCritics q = critics_of(*a);
+  PlainCritics slow = q;
   PlainAdam actor_adam, encoder_adam, decoder_adam, adam[4];
   double lift = 0;
   const double limit = as_value(std::strtod(cost_limit, nullptr), r, 0.9);
@@ -114,15 +113,8 @@ void compare(const char* cost_limit, Branches& branches) {
     actor_adam.step(actor.p, g, kRate);
     a->learn(r.rows(), 1);
     SCOPED_TRACE("step " + std::to_string(step));
-    expect_nets(*a,
-                {{"actor", &actor},
-                 {"reward_q1", &q[0]},
-                 {"reward_q2", &q[1]},
-                 {"cost0_q1", &q[2]},
-                 {"cost0_q2", &q[3]},
-                 {"action_encoder", &encoder},
-                 {"action_decoder", &decoder}},
-                3e-4);
+    expect_critics(*a, q, 3e-4);
+    expect_nets(*a, {{"actor", &actor}, {"action_encoder", &encoder}, {"action_decoder", &decoder}}, 3e-4);
     ASSERT_FALSE(::testing::Test::HasFailure());
   }
 }

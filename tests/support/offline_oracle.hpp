@@ -1,6 +1,7 @@
 // A learner from recorded rows written again in double, plainly: losses are functions of all parameters, gradients are
 // central differences of them. Networks have one hidden layer of tanh. Recordings of noise to learn from.
 #pragma once
+#include <array>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -227,6 +228,18 @@ inline void expect_nets(Agent& a, const std::vector<std::pair<const char*, const
     for (size_t i = 0; i < now.p.size(); ++i)
       EXPECT_NEAR(now.p[i], wanted->p[i], tolerance) << name << ' ' << i;
   }
+}
+
+// The pairs of critics of the reward and of cost 0.
+using PlainCritics = std::array<PlainNet, 4>;
+inline constexpr const char* kCriticNames[] = {"reward_q1", "reward_q2", "cost0_q1", "cost0_q2"};
+inline PlainCritics critics_of(Agent& a) {
+  PlainCritics q;
+  for (size_t k = 0; k < q.size(); ++k) q[k] = net_of(a, kCriticNames[k]);
+  return q;
+}
+inline void expect_critics(Agent& a, const PlainCritics& q, double tolerance) {
+  for (size_t k = 0; k < q.size(); ++k) expect_nets(a, {{kCriticNames[k], &q[k]}}, tolerance);
 }
 
 }  // namespace rdm::test
