@@ -8,8 +8,8 @@
 
 namespace rdm {
 
-// `count` sectors of equal width about `from`, counted from the direction in which a thing lies towards -y,
-// on towards -x, in world axes: in each 1 - distance / range of its nearest thing.
+// `count` sectors of equal width about `from`, in world axes: the first begins at +y, the others follow
+// towards +x. In each, 1 - distance / range of its nearest thing.
 class SectorSensor {
  public:
   SectorSensor(const Spot& from, double range, int32_t count, float* out);
