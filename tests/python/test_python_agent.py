@@ -327,7 +327,7 @@ class OfAPool(unittest.TestCase):
             self.assertEqual(redman.evaluate(agent.policy(), episodes=2, num_envs=2).episodes, 2)
         self.assertEqual(redman.Agent(obs_dim=1, action_dim=1, costs=["a", "b"]).cost_dim, 2)
         for said, told in (({"cost_dim": 2}, "cost_dim: .*costs="), ({"num_envs": 8}, "num_envs: a pool brings its own"),
-                           ({"costs": ["a"], "cost_dim": 2}, "cost_dim: 2, and costs names 1")):
+                           ({"costs": ["a"], "cost_dim": 2}, "cost_dim: it is 2, but costs has 1 names")):
             with self.assertRaisesRegex(redman.ArgumentError, told):
                 redman.Agent(pool, **said)
         with self.assertRaisesRegex(redman.UsageError, "a list of names"):

@@ -344,7 +344,7 @@ class Models(unittest.TestCase):
         env.close()
 
     def test_words_that_stand_for_nobody_are_refused(self):
-        for word, text in (("hodl", "nearest is hold"), ("/no/such/run", "no file or folder"), (3, "int is no policy")):
+        for word, text in (("hodl", "nearest is hold"), ("/no/such/run", "no file or folder"), (3, "give a policy, .*not 3")):
             with self.assertRaisesRegex(redman.Error, text):
                 redman.evaluate(word, TASK)
         with self.assertRaisesRegex(redman.ArgumentError, "center"):
@@ -420,7 +420,7 @@ class Loops(unittest.TestCase):
         np.testing.assert_array_equal(actor(obs), alone(obs))
         with self.assertRaisesRegex(redman.ArgumentError, "num_envs"):
             self.policy.actor(object())
-        with self.assertRaisesRegex(redman.ArgumentError, "pool, an environment or num_envs"):
+        with self.assertRaisesRegex(redman.ArgumentError, "either a pool or environment, or num_envs"):
             self.policy.actor()
 
     def test_named_and_pictured_observations_are_taken(self):

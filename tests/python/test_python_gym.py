@@ -512,11 +512,11 @@ class Wrong(unittest.TestCase):
         with gym.Env("hand_over_safe_finger") as env:
             env.reset(seed=1)
             for action in (0.5, np.zeros(39), np.zeros((1, 40))):
-                with self.assertRaisesRegex(ValueError, "action: shape"):
+                with self.assertRaisesRegex(ValueError, "action: its shape"):
                     env.step(action)
         with gym.VectorEnv("bandit", 2) as envs:
             envs.reset(seed=1)
-            with self.assertRaisesRegex(ValueError, "action: shape"):
+            with self.assertRaisesRegex(ValueError, "action: its shape"):
                 envs.step(np.zeros((3, 1)))
             for mask in ([True, False], np.zeros(2, bool), np.ones(3, bool), np.ones(2)):
                 with self.assertRaisesRegex(ValueError, "reset_mask"):

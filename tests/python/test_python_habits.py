@@ -115,7 +115,7 @@ HABITS = (
     ("evaluate with an option", lambda w: redman.evaluate(w.run, n_eval_episodes=2, max_steps=20).lengths.max() == 20 or 1 / 0, WORKS),
     ("evaluate a folder", lambda w: redman.evaluate(w.folder, episodes=2).costs, WORKS),
     ("evaluate an agent", lambda w: redman.evaluate(w.agent, TASK, episodes=2).returns, WORKS),
-    ("evaluate nothing that plays", lambda w: redman.evaluate(3, TASK), "is no policy"),
+    ("evaluate nothing that plays", lambda w: redman.evaluate(3, TASK), "give a policy"),
     ("a task with a slip", lambda w: redman.Pool("bal_run"), "nearest"),
 )
 

@@ -247,7 +247,7 @@ class OwnTask(unittest.TestCase):
         self.assertTrue((pool.status == 0).all())
 
     def test_mistakes_are_named(self):
-        for fault, said in (("name", "'rihgt' is no cost of it.*right"), ("shape", r"field 'position' has shape \(2, 3\), not \(2, 2\)"),
+        for fault, said in (("name", "the task has no cost 'rihgt'.*right"), ("shape", r"field 'position' has shape \(2, 3\), not \(2, 2\)"),
                             ("fields", "'mass', 'weight'"), ("sets", "it cannot be changed in observe")):
             Broken.fault = ""
             pool = redman.Pool(Broken, num_envs=2)

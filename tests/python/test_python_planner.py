@@ -104,8 +104,8 @@ class Plans(unittest.TestCase):
     def test_errors_say_what_may_be(self):
         pool = worlds()
         for call, words in (
-                (lambda: redman.Planner(TASK), "pool: a redman.Pool"),
-                (lambda: redman.Planner(pool, agent=3), "agent: a redman.Agent"),
+                (lambda: redman.Planner(TASK), "pool: it must be a redman.Pool"),
+                (lambda: redman.Planner(pool, agent=3), "agent: it must be a redman.Agent"),
                 (lambda: redman.Planner(pool, options={"sampels": 3}), "nearest is samples"),
                 (lambda: redman.Planner(pool, sampels=3), "there is no such argument"),
                 (lambda: redman.Planner(pool, options=FAST, cost_limits={"sped": 3}), "nearest is speed"),

@@ -71,7 +71,7 @@ class Together(unittest.TestCase):
     def test_what_a_hook_raises_ends_the_call(self):
         def broken(message):
             raise OSError("the line is cut")
-        for hook, words in ((broken, "gather raised OSError: the line is cut"), (lambda message: [message, b""], "bytes, not 2 of")):
+        for hook, words in ((broken, "gather raised OSError: the line is cut"), (lambda message: [message, b""], "bytes, but must return 2 of")):
             ranks = redman.Ranks(0, 2, hook)
             pool = redman.Pool(TASK, 2, ranks=ranks)
             pool.reset()

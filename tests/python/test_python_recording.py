@@ -97,13 +97,13 @@ class Rows(unittest.TestCase):
         pool, recording, _ = recorded(2)
         for call, words in (
                 (lambda: redman.Recording(), "give a pool, or obs_dim and action_dim"),
-                (lambda: redman.Recording(pool, obs_dim=3), "give it or them"),
+                (lambda: redman.Recording(pool, obs_dim=3), "give either a pool"),
                 (lambda: redman.Recording("r.npz"), r"Recording\.load"),
                 (lambda: recording.append(obs=np.zeros((2, 7))), "obs and action"),
                 (lambda: recording.append(obs=np.zeros((2, 6)), action=np.zeros((2, 2))), r"\(2, 6\) does not fit \(2, 7\)"),
                 (lambda: recording.append(obs=np.full((2, 7), np.nan), action=np.zeros((2, 2))), "finite"),
-                (lambda: recording.append(np.zeros(3)), "append: a redman.Recording"),
-                (lambda: recording.filter(max_cost=[1, 2]), "2 limits for 3 costs"),
+                (lambda: recording.append(np.zeros(3)), "append: give a redman.Recording"),
+                (lambda: recording.filter(max_cost=[1, 2]), "it has 2 limits, but there are 3 costs"),
                 (lambda: recording.observations, "Recording.observations: obs")):
             with self.assertRaisesRegex((redman.Error, AttributeError), words):
                 call()
@@ -194,7 +194,7 @@ class Learning(unittest.TestCase):
         plain.reset()
         self.assertGreater(np.abs(plain.obs[:, None] - starts[None]).max(axis=2).min(axis=1).max(), 1e-3)
         pool.set_starts(None, 0.0)
-        with self.assertRaisesRegex(redman.UsageError, "recording: a redman.Recording"):
+        with self.assertRaisesRegex(redman.UsageError, "recording: it must be a redman.Recording"):
             pool.set_starts("r.npz", 1.0)
 
     def test_an_encoder_learns_to_tell_points_apart(self):
@@ -237,7 +237,7 @@ class Policies(unittest.TestCase):
             self.assertEqual(redman.load(path).info, policy.info)
             with self.assertRaisesRegex(redman.ArgumentError, "nearest is .onnx"):
                 policy.export(os.path.join(folder, "p.onx"))
-            with self.assertRaisesRegex(redman.ArgumentError, "C files alone"):
+            with self.assertRaisesRegex(redman.ArgumentError, "only be given for a .c file"):
                 policy.export(os.path.join(folder, "p.onnx"), int8=True)
 
 

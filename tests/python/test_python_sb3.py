@@ -138,7 +138,7 @@ class Contract(unittest.TestCase):
     def test_wrong_actions(self):
         vec = sb3.VecEnv("bandit", 2)
         vec.reset()
-        with self.assertRaisesRegex(ValueError, "action: shape"):
+        with self.assertRaisesRegex(ValueError, "action: its shape"):
             vec.step(np.zeros((2, 3)))
 
 

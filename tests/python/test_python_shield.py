@@ -139,7 +139,7 @@ class Pools(unittest.TestCase):
             redman.Shield(single, policy, steps=1)
         with self.assertRaisesRegex(redman.VersionError, "on task reorient: "):
             redman.Shield(single, redman.Policy.trained("jenga"))
-        with self.assertRaisesRegex(redman.UsageError, "policy: a redman.Policy"):
+        with self.assertRaisesRegex(redman.UsageError, "policy: it must be a redman.Policy"):
             shield.add(3)
 
 
@@ -323,7 +323,7 @@ class Agents(unittest.TestCase):
 
     def test_what_does_not_fit_is_refused(self):
         agent, pool = self.learner()
-        with self.assertRaisesRegex(redman.UsageError, "shield: a redman.Shield or None"):
+        with self.assertRaisesRegex(redman.UsageError, "shield: it must be a redman.Shield or None"):
             agent.shield = True
         agent.shield = redman.Shield(pool)
         with self.assertRaisesRegex(redman.ArgumentError, "decisions last 1 control steps, but the agent's last 4"):
@@ -375,7 +375,7 @@ class Evaluations(unittest.TestCase):
         e = redman.evaluate("zero", "hand_over_safe_finger", episodes=2, options=NOWHERE, shield={"unproven": "least"})
         self.assertGreater(e.violating_steps, 0)
         self.assertEqual(e.decisions, e.interventions)
-        for shield, policy, words in ((None, "trained", "shield_policy: there is no shield"), (3, None, "shield: True, or a dict"),
+        for shield, policy, words in ((None, "trained", "shield_policy: .* there is none"), (3, None, "shield: it must be True, or a dict"),
                                       ({"blok": 3}, None, "block")):
             with self.assertRaisesRegex(redman.Error, words):
                 redman.evaluate("zero", TASK, episodes=1, shield=shield, shield_policy=policy)
@@ -473,7 +473,7 @@ class Environments(unittest.TestCase):
             self.assertEqual((env.shield.budgets[0], env.shield.options["unproven"], len(env.shield.backups)), (5, "least", 3))
         with self.assertRaisesRegex(redman.ArgumentError, "policy: it holds an action for 4 steps"):
             gym.Env(TASK, shield=True, shield_policy="trained")
-        with self.assertRaisesRegex(redman.ArgumentError, "shield_policy: there is no shield"):
+        with self.assertRaisesRegex(redman.ArgumentError, "shield_policy: .* there is none"):
             gym.Env(TASK, shield_policy="trained")
 
     def test_pickle_and_deepcopy_go_on_alike(self):

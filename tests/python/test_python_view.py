@@ -368,7 +368,7 @@ class OfAPool(unittest.TestCase):
 
     def test_what_is_refused(self):
         pool = redman.Pool("bandit", num_envs=3)
-        for named, words in (({"num_envs": 4}, "worlds 0 to 3 of 3"), ({"env": 3}, "of 3"), ({"policy": "trained"}, "of the pool")):
+        for named, words in (({"num_envs": 4}, "worlds 0 to 3 of 3"), ({"env": 3}, "of 3"), ({"policy": "trained"}, "which has its own")):
             with self.assertRaisesRegex(redman.Error, words):
                 redman.view(pool, **named)
         with self.assertRaisesRegex(redman.Error, "bal_run"):

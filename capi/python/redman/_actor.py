@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @contextlib.contextmanager
 def on_task(pool: Optional[Pool]) -> Iterator[None]:
-    """Adds to an error about a policy that does not fit the name of the task."""
+    """Adds the name of the task to an error about a policy that does not fit."""
     try:
         yield
     except VersionError as error:
@@ -31,7 +31,7 @@ def on_task(pool: Optional[Pool]) -> Iterator[None]:
 
 
 def worlds_of(where: Any) -> tuple[Optional[Pool], Any]:
-    """The pool of an environment and its worlds, for environments of redman.gym, sb3, safety and omnisafe, wrapped or not."""
+    """The pool and the worlds of an environment of redman.gym, sb3, safety or omnisafe, wrapped or not."""
     if isinstance(where, Pool):
         return where, None
     inner: Any = where
@@ -48,7 +48,7 @@ def worlds_of(where: Any) -> tuple[Optional[Pool], Any]:
 
 
 class Actor:
-    """Actions of a policy for worlds that step faster than it decides: each is held until the next decision.
+    """Plays a policy in worlds that step faster than the policy decides. It holds each action until the next decision.
 
         pool = redman.Pool("hand_over_safe_finger", 16)      env = gymnasium.make("redman/HandOverSafeFinger-v0")
         pool.reset()                                         obs, info = env.reset()
@@ -56,10 +56,10 @@ class Actor:
         for _ in range(75):                                  for _ in range(75):
             pool.step(actor())                                   obs, ... = env.step(actor(obs))
 
-    In a pool, or in an environment of redman.gym, sb3, safety or omnisafe (wrapped or not), it finds out how many control
-    steps a step has, the center that is added to actions, what the worlds see and where episodes have begun, so that a
-    policy behaves the same in all of them. For worlds of another kind give num_envs=, action_repeat= and center=, and call
-    reset(mask) where episodes begin.
+    The second argument is a pool, or an environment of redman.gym, sb3, safety or omnisafe, wrapped or not. The actor reads
+    from it how many control steps a step has, the center that is added to actions, the point clouds, and where episodes
+    have begun. So a policy behaves the same in all of them. For other worlds give num_envs=, action_repeat= and center=, and
+    call reset(mask) where episodes begin.
     """
 
     def __init__(self, policy: Policy, where: Any = None, *, num_envs: Optional[int] = None, action_repeat: int = 1,
@@ -67,14 +67,15 @@ class Actor:
         self.policy, self.stochastic = policy, stochastic
         self._pool, self._worlds = worlds_of(where)
         if where is not None and self._pool is None:
-            raise ArgumentError(f"actor: {type(where).__name__} has no worlds of redman that it could ask; say num_envs=, "
-                                "action_repeat= and center=")
+            raise ArgumentError(f"actor: {type(where).__name__} is not a pool or an environment of redman: give num_envs=, "
+                                "action_repeat= and center= instead")
         if (self._pool is None) == (num_envs is None):
-            raise ArgumentError("actor: a pool, an environment or num_envs=")
+            raise ArgumentError("actor: give either a pool or environment, or num_envs=")
         spec = sized(_abi.rdm_spec)
         if self._pool is not None:
             if action_repeat != 1 or center is not None:
-                raise ArgumentError("actor: action_repeat and center are those of the worlds that were given")
+                raise ArgumentError("actor: action_repeat and center cannot be given with a pool or an environment, which "
+                                    "has its own")
             num_envs, center = self._pool.num_envs, getattr(self._worlds, "center", None)
             spec = self._pool._spec
         else:
@@ -87,7 +88,7 @@ class Actor:
         self.num_envs: int = int(num_envs or 0)
         self._center = None if center is None else np.asarray(center, np.float64)
         if self._center is not None and self._center.shape != (policy.info.action_dim,):
-            raise ArgumentError(f"center: shape {self._center.shape} does not fit ({policy.info.action_dim},)")
+            raise ArgumentError(f"center: its shape is {self._center.shape}, but must be ({policy.info.action_dim},)")
         config = sized(_abi.rdm_actor_config)
         check(lib.rdm_actor_config_init(byref(config), ctypes.sizeof(config)))
         config.policy, config.spec = policy._open(), ctypes.pointer(spec)
@@ -106,12 +107,12 @@ class Actor:
 
     def __call__(self, obs: Any = None, began: Any = None, mask: Any = None, points: Any = None, point_class: Any = None,
                  point_color: Any = None) -> Any:
-        """Actions [num_envs][action_dim] for the next step; [action_dim] for one observation [obs_dim].
+        """Returns the actions [num_envs][action_dim] for the next step, or [action_dim] for one observation [obs_dim].
 
-        obs None: the worlds' own observations. Others are compared with these, and refused where a wrapper has changed an
-        observation that the policy learned without the wrapper. began: where episodes have begun, in addition to those that
-        the actor knows of. mask: where a step will be taken. points, point_class, point_color: the clouds of worlds of
-        another kind.
+        obs: the observations; None takes those of the worlds. Observations that differ from those of the worlds are refused,
+        since a wrapper has changed what the policy learned to read. began: worlds in which an episode has begun, in addition
+        to those that the actor knows of. mask: worlds that will take a step. points, point_class, point_color: the point
+        clouds, for worlds that are not in a pool.
         """
         rows, single = self._observed(obs)
         begun = self._begun()
@@ -128,25 +129,26 @@ class Actor:
         return self._as_given(action[0] if single else action, obs)
 
     def reset(self, mask: Any = None) -> None:
-        """Begins new episodes, everywhere or where mask [num_envs] is true: a decision is due there."""
+        """Begins new episodes in all worlds, or in those where mask [num_envs] is true. The next call decides there anew."""
         chosen = None if mask is None else given(mask, self._rows["mask"], self._lengths, "mask", spread=True)
         check(lib.rdm_actor_reset(self._handle.value, address(chosen), None))
 
     def predict(self, observation: Any, state: Any = None, episode_start: Any = None,
                 deterministic: bool = True) -> tuple[Any, Any]:
-        """Like predict of a Stable-Baselines3 model: returns (action, state). The actor holds actions itself and returns
-        state unchanged."""
+        """Returns (action, state) like predict of a Stable-Baselines3 model. The actor holds actions itself and returns state
+        unchanged."""
         if deterministic == self.stochastic:
-            raise ArgumentError(f"predict: deterministic={deterministic}, but this actor "
-                                f"{'samples' if self.stochastic else 'takes the mean'} (policy.actor(..., stochastic=...))")
+            raise ArgumentError(f"predict: deterministic={deterministic} cannot be used, since this actor "
+                                f"{'samples' if self.stochastic else 'takes the mean'}: make it with "
+                                f"policy.actor(..., stochastic={not deterministic})")
         return self(observation, began=episode_start), state
 
     def state(self) -> bytes:
-        """Held actions, counts and noise."""
+        """The held actions, their counts and the state of the noise, as bytes."""
         return bytes_of(lib.rdm_actor_write_state, self._handle.value)
 
     def set_state(self, state: bytes) -> None:
-        """Continues from state(), with the same bytes."""
+        """Continues from what state() returned; the actions that follow are bitwise the same."""
         check(lib.rdm_actor_read_state(self._handle.value, bytes(state), len(state)))
 
     def _observed(self, obs: Any) -> tuple[Array, bool]:
@@ -154,16 +156,16 @@ class Actor:
         own = None if self._pool is None else self._pool.obs
         if obs is None:
             if own is None:
-                raise ArgumentError("obs: an actor without a pool or an environment needs them")
+                raise ArgumentError("obs: it must be given, since this actor has no pool or environment to read it from")
             return own, False
         single = self._single(obs)
         rows = self._flat(obs)
         if rows.ndim != (1 if single else 2):
-            raise ArgumentError(f"obs: shape {rows.shape} does not fit ({self.num_envs}, {self.policy.info.obs_dim})")
+            raise ArgumentError(f"obs: its shape is {rows.shape}, but must be ({self.num_envs}, {self.policy.info.obs_dim})")
         rows = given(rows.reshape(-1, rows.shape[-1]), self._rows["obs"], self._lengths, "obs")
         if own is not None and not np.array_equal(rows, own):
-            raise ArgumentError("obs: not what the worlds show now: a wrapper has changed it, or it is an older one. Give "
-                                "none, or take policy.actor(num_envs=...)")
+            raise ArgumentError("obs: it differs from what the worlds show now: a wrapper has changed it, or it is an older one. "
+                                "Call the actor without obs, or make it with policy.actor(num_envs=...)")
         return rows, single
 
     @staticmethod
@@ -180,7 +182,7 @@ class Actor:
             elif self._pool is not None and all(name in obs for name in self._pool.fields):
                 obs = np.concatenate([np.asarray(obs[name]) for name in self._pool.fields], axis=-1)
             else:
-                raise ArgumentError("obs: a dict without \"state\" and without the fields of these worlds")
+                raise ArgumentError("obs: a dict must have the entry \"state\" or an entry for each field of these worlds")
         return np.asarray(obs.detach().cpu() if hasattr(obs, "detach") else obs)
 
     @staticmethod
@@ -203,8 +205,8 @@ class Actor:
             return None
         seen, i = self._pool.sensors, self.policy.info
         if seen.points is None or seen.points.shape[1] != i.num_points:
-            raise UnsupportedError(f"actor: the policy reads clouds of {i.num_points} points: options modality=points and "
-                                   f"points={i.num_points}")
+            raise UnsupportedError(f"actor: the policy reads clouds of {i.num_points} points, which these worlds do not have: "
+                                   f"make them with the options modality=points and points={i.num_points}")
         raw = _abi.rdm_sensors(struct_size=ctypes.sizeof(_abi.rdm_sensors))
         check(lib.rdm_pool_get_sensors(self._pool._open(), byref(raw)))
         self._kept = seen

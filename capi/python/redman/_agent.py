@@ -125,10 +125,10 @@ class Agent(Taught, Hinted):
         own: dict[str, Any] = {"algo": algo, "seed": seed, "num_threads": threads, "options": dict(options or {}),
                                "ranks": ranks}
         if isinstance(costs, str):
-            raise UsageError(f"costs: a list of names, [{costs!r}]")
+            raise UsageError(f"costs: it must be a list of names, such as [{costs!r}]")
         columns: Sequence[str] = [] if costs is None else list(costs)
         if costs is not None and cost_dim not in (None, len(columns)):
-            raise ArgumentError(f"cost_dim: {cost_dim}, and costs names {len(columns)}")
+            raise ArgumentError(f"cost_dim: it is {cost_dim}, but costs has {len(columns)} names")
         if pool is not None:
             brought = {"obs_dim": obs_dim, "action_dim": action_dim, "num_envs": num_envs, "task": task or None,
                        "control_dt": control_dt or None, "max_steps": max_steps or None,
@@ -213,7 +213,7 @@ class Agent(Taught, Hinted):
         if mask is not None:
             chosen = np.ascontiguousarray(np.asarray(mask, bool), np.uint8)
             if chosen.shape != (self.num_envs,):
-                raise ArgumentError(f"mask: shape {chosen.shape} does not fit ({self.num_envs},)")
+                raise ArgumentError(f"mask: its shape is {chosen.shape}, but must be ({self.num_envs},)")
         with self._lock:
             self._check(lib.rdm_agent_forget(self._a, _MODES[mode], None if chosen is None else chosen.ctypes.data))
 
@@ -255,7 +255,7 @@ class Agent(Taught, Hinted):
     def _transition(self, call: str, **said: Any) -> tuple[Any, dict[str, Any]]:
         """The struct, and the arrays that it points to."""
         if said["cost"] is None and self.cost_dim:
-            raise ArgumentError(f"{call}: cost is missing: [{self.num_envs}][{self.cost_dim}], 0 where there was none; an "
+            raise ArgumentError(f"{call}: cost is missing: give [{self.num_envs}][{self.cost_dim}] numbers, 0 where there was no cost. An "
                                 "agent without costs is made with cost_dim=0")
         table = _abi.ROWS["rdm_transition"]
         rows = {name: given(value, table[name], self._lengths, name)
@@ -324,7 +324,7 @@ class Agent(Taught, Hinted):
         if pool is None:
             pool = None if self._pool is None else self._pool()
         if pool is None:
-            raise UsageError("learn: on which worlds? agent.learn(steps, pool)")
+            raise UsageError("learn: this agent has no pool: give one, agent.learn(steps, pool)")
         if not pool._begun:
             pool.reset()
         options = self.options
@@ -436,7 +436,7 @@ class Agent(Taught, Hinted):
     def shield(self, shield: Optional[Shield]) -> None:
         from ._shield import Shield
         if shield is not None and not isinstance(shield, Shield):
-            raise UsageError(f"shield: a redman.Shield or None, not {shield!r}")
+            raise UsageError(f"shield: it must be a redman.Shield or None, not {shield!r}")
         with self._lock:
             self._check(lib.rdm_agent_set_shield(self._a, None if shield is None else shield._open()))
             self._shield = shield

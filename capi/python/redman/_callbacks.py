@@ -25,7 +25,7 @@ def c_function(member: str, function: Callable[..., Any]) -> Any:
     if member not in members:
         raise NotFoundError(f"{member}: no function of a struct of redman.h{nearest(member, members)}")
     if not callable(function):
-        raise UsageError(f"{member}: a function, not {function!r}")
+        raise UsageError(f"{member}: it must be a function, not {function!r}")
     answers = members[member]._restype_ is ctypes.c_int32
 
     def call(*arguments: Any) -> Any:

@@ -149,7 +149,7 @@ def _runs(given: Any) -> Iterable[Run]:
         for each in given:
             yield from _runs(each)
     else:
-        raise UsageError(f"compare: a {type(given).__name__} is no run, run folder or list of these")
+        raise UsageError(f"compare: it must be a run, a run folder or a list of these, not a {type(given).__name__}")
 
 
 @keywords(aliases={"num_episodes": "episodes", "n_episodes": "episodes", "n_eval_episodes": "episodes"})

@@ -117,7 +117,7 @@ def read(folder: Union[str, os.PathLike[str]]) -> Curve:
         raise MissingFileError(f"{path} is no run folder: progress.csv: {error.strerror}") from None
     names = lines[0].split(",") if lines else []
     if "TotalEnvSteps" not in names:
-        raise FormatError(f"{path}/progress.csv: no column TotalEnvSteps")
+        raise FormatError(f"{path}/progress.csv: it has no column TotalEnvSteps")
     rows = [cells for cells in (line.split(",") for line in lines[1:]) if len(cells) == len(names)]
     try:
         table = np.array(rows, dtype=np.float64).reshape(len(rows), len(names))

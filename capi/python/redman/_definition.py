@@ -28,7 +28,7 @@ def pose_of(value: Any, where: str = "pose") -> _abi.rdm_pose:
     """The struct of a pose: 3 numbers, m, or 7 with a quaternion (x, y, z, w)."""
     numbers = np.asarray(value, np.float64).ravel()
     if numbers.size not in (3, 7):
-        raise ArgumentError(f"{where}: 3 numbers of a place, or 7 with a quaternion, not {numbers.size}")
+        raise ArgumentError(f"{where}: give the 3 numbers of a position, or 7 with a quaternion, not {numbers.size}")
     pose = _abi.rdm_pose()
     pose.p = type(pose.p)(*numbers[:3])
     if numbers.size == 7:
@@ -73,7 +73,7 @@ def _set(struct: ctypes.Structure, name: str, of: Any, value: Any, where: str, l
         if name == "color" and len(listed) == 3:
             listed.append(255)
         if len(listed) > of._length_ or (len(listed) < of._length_ and name != "size"):  # a radius alone is a size
-            raise ArgumentError(f"{where}: {of._length_} numbers, not {len(listed)}")
+            raise ArgumentError(f"{where}: give {of._length_} numbers, not {len(listed)}")
         setattr(struct, name, of(*listed))
     elif hasattr(of, "contents"):
         rows = (of._type_ * len(value))()
@@ -97,7 +97,7 @@ def _word(kind: type[ctypes.Structure], name: str, word: str, where: str, links:
     elif name in _LINKS:
         known = {**_NO_ROW, **{link: i for i, link in enumerate(links)}}
     else:
-        raise UsageError(f"{where}: a number, not {word!r}")
+        raise UsageError(f"{where}: it must be a number, not {word!r}")
     if word not in known:
         raise ArgumentError(f"{where}: {word!r} is none of {', '.join(known)}{nearest(word, known)}")
     return known[word]

@@ -205,7 +205,7 @@ def task_name(task: TaskName) -> str:
     if isinstance(task, type) and hasattr(task, "register"):
         return task.register()
     if not isinstance(task, (str, os.PathLike)):
-        raise UsageError(f"task: the name of a task, a .task file or a subclass of redman.Task, not {task!r}")
+        raise UsageError(f"task: it must be the name of a task, a .task file or a subclass of redman.Task, not {task!r}")
     task = named("task", task)
     found = re.fullmatch(r"redman/(\w+)-v\d+", task)
     return found[1] if found else task

@@ -26,7 +26,7 @@ def export(policy: Policy, path: Union[str, os.PathLike[str]], name: Optional[st
     if ending not in _FLAGS:
         raise ArgumentError(f"export: {target.name!r} ends in none of .rdm, {', '.join(_FLAGS)}{nearest(ending, _FLAGS)}")
     if ending != ".c" and (name is not None or int8):
-        raise ArgumentError("export: name and int8 are of C files alone")
+        raise ArgumentError("export: name and int8 can only be given for a .c file")
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder, "policy.rdm")
         file.write_bytes(bytes(policy))

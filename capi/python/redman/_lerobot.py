@@ -154,7 +154,7 @@ def load(source: FilePath) -> Arrays:
     info = json.loads((path / "meta/info.json").read_text())
     version = info.get("codebase_version", "none")
     if not str(version).startswith("v3"):
-        raise FormatError(f"{path}: its version is {version}, this reads {_VERSION}; lerobot's scripts bring older ones up to date")
+        raise FormatError(f"{path}: its version is {version}, but only {_VERSION} can be read; lerobot's scripts convert older versions")
     _, pq = _pyarrow()
     widths = {name: int(np.prod(f["shape"])) for name, f in info["features"].items() if f["dtype"] not in ("image", "video", "string")}
     observed = [name for name in widths if name.startswith("observation.")]

@@ -78,9 +78,9 @@ def encoded(value: str | os.PathLike[str]) -> bytes:
     try:
         raw = os.fsencode(value)
     except TypeError:
-        raise UsageError(f"a text or a path, not {value!r}") from None
+        raise UsageError(f"give a text or a path, not {value!r}") from None
     if b"\0" in raw:
-        raise ArgumentError(f"{value!r}: a text with a zero byte in it")
+        raise ArgumentError(f"{value!r}: a text must not contain a zero byte")
     return raw
 
 
@@ -137,7 +137,7 @@ def whole(value: Any, name: str, low: int, high: int) -> int:
     try:
         number = operator.index(value)
     except TypeError:
-        raise UsageError(f"{name}: a whole number, not {value!r}") from None
+        raise UsageError(f"{name}: it must be a whole number, not {value!r}") from None
     if not low <= number <= high:
         raise RangeError(f"{name}: {number} is not in {low} to {high}")
     return number

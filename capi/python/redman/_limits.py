@@ -22,7 +22,7 @@ def each_cost(wanted: CostLimits, usual: Optional[Iterable[float]], columns: Seq
         try:
             return -1.0 if math.isnan(limit) else float(limit)
         except TypeError:
-            raise UsageError(f"{name}: numbers or None, not {limit!r}") from None
+            raise UsageError(f"{name}: a limit must be a number or None, not {limit!r}") from None
 
     limits = None if usual is None else [float(limit) for limit in usual]
     if wanted is None:
@@ -38,12 +38,12 @@ def each_cost(wanted: CostLimits, usual: Optional[Iterable[float]], columns: Seq
     if isinstance(wanted, (int, float, np.number)):
         limits = limits or [-1.0] * len(columns)
         if not limits:
-            raise ArgumentError(f"{name}: there are no costs")
+            raise ArgumentError(f"{name}: it cannot be given, since there are no costs")
         limits[0] = number(float(wanted))
         return limits
     if isinstance(wanted, str) or not hasattr(wanted, "__iter__"):
-        raise UsageError(f"{name}: a number, one for each cost, or a dict by name, not {wanted!r}")
+        raise UsageError(f"{name}: it must be a number, a list with one for each cost, or a dict by name, not {wanted!r}")
     listed = [number(limit) for limit in wanted]
     if len(listed) != len(columns):
-        raise ArgumentError(f"{name}: {len(listed)} limits for {len(columns)} costs")
+        raise ArgumentError(f"{name}: it has {len(listed)} limits, but there are {len(columns)} costs")
     return listed

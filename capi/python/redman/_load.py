@@ -41,8 +41,8 @@ def load(path: Union[str, os.PathLike[str]]) -> Any:
     with open(file, "rb") as opened:
         head = opened.read(8)
     if head in (b"RDMAGENT", b"RDMCHECK"):
-        raise FormatError(f"load {file}: it is what an agent has saved: agent.load(path), or agent.read_checkpoint(path, pool)")
+        raise FormatError(f"load {file}: an agent has saved it: read it with agent.load(path), or agent.read_checkpoint(path, pool)")
     ending = file.suffix.lower()
     if ending not in _LOADERS:
-        raise FormatError(f"load {file}: it ends in none of {', '.join(_LOADERS)}, and is no run folder")
+        raise FormatError(f"load {file}: it is not a run folder, and its name ends in none of {', '.join(_LOADERS)}")
     return _LOADERS[ending](path)

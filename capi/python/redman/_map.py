@@ -27,7 +27,7 @@ _FORMATS = {"bt": MapFormat.BINARY, "ot": MapFormat.FULL}
 def _points(points: Any, name: str = "points") -> Array:
     rows = np.ascontiguousarray(points, np.float32)
     if rows.ndim != 2 or rows.shape[1] != 3:
-        raise ArgumentError(f"{name}: shape {rows.shape} does not fit (count, 3)")
+        raise ArgumentError(f"{name}: its shape is {rows.shape}, but must be (count, 3)")
     return rows
 
 

@@ -75,7 +75,7 @@ def _known(function: Callable[..., Any], placed: list[str], given: dict[str, Any
         if own == "options" and own in out:  # laid already
             continue
         if own in out or own in placed:
-            raise UsageError(f"{name}: {key} and {own} are one argument, given twice")
+            raise UsageError(f"{name}: {key} and {own} mean the same argument: give one of them")
         out[own] = value
     return out
 

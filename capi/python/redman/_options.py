@@ -35,7 +35,7 @@ def shown(key: str, value: Any, kinds: Kinds = {}) -> str:
     try:
         number = float(value)
     except (TypeError, ValueError):
-        raise UsageError(f"option {key}: a number, a flag, a text, or a list or pair of numbers, "
+        raise UsageError(f"option {key}: it must be a number, a flag, a text, or a list or pair of numbers, "
                               f"not {type(value).__name__}") from None
     return repr(number)[:-2] if repr(number).endswith(".0") else repr(number)
 
@@ -48,7 +48,7 @@ def _listed(key: str, values: list[Any], pair: bool, kinds: Kinds) -> str:
     kind = kind_of(key, kinds)
     ranged = pair if kind is None else kind in (OptionKind.NUMBER, OptionKind.INTEGER)
     if ranged and len(values) != 2:
-        raise ArgumentError(f"option {key}: a range is a pair of numbers, not {len(values)}")
+        raise ArgumentError(f"option {key}: a range must be a pair of numbers, not {len(values)}")
     return (".." if ranged else ",").join(shown(key, value) for value in values)
 
 
@@ -58,7 +58,7 @@ def settings_of(options: Options, kinds: Kinds = {}) -> bytes:
     for key, value in options.items():
         line = f"{key}={shown(key, value, kinds)}"
         if "\n" in line or "=" in key:
-            raise ArgumentError(f"option {key!r}: a key without '=', a value of one line")
+            raise ArgumentError(f"option {key!r}: the key must not contain '=', and the value must be one line")
         lines.append(line)
     return encoded("\n".join(lines))
 

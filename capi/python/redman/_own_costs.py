@@ -269,7 +269,7 @@ class Own:
 
 def _later(rows: Rows) -> Any:
     """Stands for a function that was not imported yet."""
-    raise UsageError("own costs: ready() imports them first")
+    raise UsageError("own costs: they are not imported yet: call ready() first")
 
 
 def _by_name(costs: Costs) -> dict[str, Union[RowFunction, str]]:

@@ -37,7 +37,7 @@ def load_kept(config: Mapping[str, Any], where: str) -> None:
         if not _is_known(kind, name):
             _LOADERS[kind](data)
         elif kind != "task" and _TEXTS[kind](_number(kind, name)) != data:
-            raise ArgumentError(f"{where}: its {kind} {name} is another than the one of that name that is loaded")
+            raise ArgumentError(f"{where}: its {kind} {name} differs from the one of that name that is loaded already")
 
 
 def _texts(config: Mapping[str, Any]) -> Iterator[tuple[str, str, bytes]]:

@@ -209,7 +209,8 @@ class _Description:
     def _costs(self) -> dict[str, tuple[float, str]]:
         given = self.kind.costs if isinstance(self.kind.costs, Mapping) else {name: None for name in self.kind.costs}
         if not given:
-            raise UsageError(f"{self.where}.costs: at least one, as {{\"right\": (5, \"x above 0.5 m\")}}; None: without a limit")
+            raise UsageError(f"{self.where}.costs: give at least one, such as {{\"right\": (5, \"x above 0.5 m\")}}; the limit None "
+                             "means no limit")
         out = {}
         for name, row in given.items():
             limit, told = row if isinstance(row, (tuple, list)) else (row, name)
@@ -252,7 +253,7 @@ class _Description:
             if given is not None:
                 array = np.ascontiguousarray(given, np.float32)
                 if array.shape != (kind.action_dim,):
-                    raise ArgumentError(f"{self.where}.{member}: shape {array.shape} is not ({kind.action_dim},)")
+                    raise ArgumentError(f"{self.where}.{member}: its shape is {array.shape}, but must be ({kind.action_dim},)")
                 setattr(d, member, array.ctypes.data)
                 self.kept.append(array)
         kinds: dict[str, Any] = {field[0]: field[1] for field in _abi.rdm_task_def._fields_}
@@ -280,7 +281,7 @@ class _Description:
         elif isinstance(value, str):
             row.kind, row.text = OptionKind.TEXT, encoded(value)
         else:
-            raise UsageError(f"{self.where}.options[{key!r}]: a number, a bool, a text or (low, high), not {value!r}")
+            raise UsageError(f"{self.where}.options[{key!r}]: it must be a number, a bool, a text or (low, high), not {value!r}")
         row.low, row.high = (-2147483648, 2147483647) if row.kind == OptionKind.INTEGER else (-1e9, 1e9)
 
     def _guarded(self, name: str, function: Callable[..., None]) -> Callable[..., int]:
@@ -389,7 +390,7 @@ class _Description:
 
     def _column(self, name: str) -> int:
         if name not in self.columns:
-            raise ArgumentError(f"{self.where}.judge: {name!r} is no cost of it{nearest(name, self.columns)}")
+            raise ArgumentError(f"{self.where}.judge: the task has no cost {name!r}{nearest(name, self.columns)}")
         return self.columns[name]
 
     def _observe_many(self, instance: int, at: int) -> None:
@@ -407,7 +408,7 @@ class _Description:
             out[:] = given
             return
         if len(given) != len(self.fields):
-            raise ArgumentError(f"{self.where}.observe: {len(given)} arrays, fields has {len(self.fields)}")
+            raise ArgumentError(f"{self.where}.observe: it returned {len(given)} arrays, but there are {len(self.fields)} fields")
         column = 0
         for array, (name, (count, *_)) in zip(given, self.fields.items()):
             shown = np.asarray(array)

@@ -73,9 +73,9 @@ class Planner(Hinted):
                  threads: int = 0, noise: Any = None, cost_limits: CostLimits = None, options: Optional[Options] = None,
                  stop: Optional[Stop] = None) -> None:
         if not isinstance(pool, Pool):
-            raise UsageError(f"pool: a redman.Pool, not {pool!r}")
+            raise UsageError(f"pool: it must be a redman.Pool, not {pool!r}")
         if agent is not None and not isinstance(agent, Agent):
-            raise UsageError(f"agent: a redman.Agent, whose critic is asked, not {agent!r}; a policy is policy=")
+            raise UsageError(f"agent: it must be a redman.Agent, which has critics, not {agent!r}; give a policy as policy=")
         first = next(iter(pool.costs.values()), None)
         usual = [-1.0] * pool.cost_dim
         if first is not None and first.limit is not None:

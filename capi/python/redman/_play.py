@@ -356,8 +356,8 @@ def _judged(player: Player, task: Optional[str]) -> _Judged:
         return _of_model(player)
     if callable(player):
         return _Judged(player)
-    raise ArgumentError(f"evaluate: a {type(player).__name__} is no policy, run, folder, baseline, function of rows or model "
-                        "with predict")
+    raise ArgumentError(f"evaluate: give a policy, a run, a folder, a baseline, a function of rows or a model with predict, not "
+                        f"{player!r}")
 
 
 def _named(word: Union[str, os.PathLike[str]], task: Optional[str]) -> Union[Policy, str]:
@@ -366,7 +366,7 @@ def _named(word: Union[str, os.PathLike[str]], task: Optional[str]) -> Union[Pol
         return str(word)
     if word == "trained":
         if task is None:
-            raise ArgumentError("evaluate: say which task")
+            raise ArgumentError("evaluate: the task is missing: give task=")
         return Policy.trained(task)
     if Path(word).exists():
         return Policy.load(word)
@@ -422,13 +422,13 @@ def evaluate(player: Player, task: Optional[TaskName] = None, episodes: int = 10
     shield={"unproven": "least"} such steps are counted in violating_steps instead.
     """
     if episodes < 1:
-        raise ArgumentError("episodes: 1 or more")
+        raise ArgumentError(f"episodes: {episodes} is less than 1")
     task = None if task is None else task_name(task)
     judged = _judged(player, task)
     origin = judged.origin
     known = judged.task or (origin.task if origin else None)
     if task is None and known is None:
-        raise ArgumentError("evaluate: say which task")
+        raise ArgumentError("evaluate: the task is missing: give task=")
     chosen = known if task is None else task
     assert chosen is not None
     own: Mapping[str, Any] = {}
@@ -446,7 +446,7 @@ def evaluate(player: Player, task: Optional[TaskName] = None, episodes: int = 10
     laid = {key: value for key, value in own.items() if _folded(key) not in given_options}
     laid.update(options or {})
     if isinstance(judged.player, Policy) and center is not None:
-        raise ArgumentError("center: a policy of redman acts about none")
+        raise ArgumentError("center: it cannot be given with a policy of redman, whose actions need no center")
     repeat = judged.action_repeat if action_repeat is None else action_repeat
     if repeat is not None and "action_repeat" not in given_options:
         laid = {key: value for key, value in laid.items() if _folded(key) != "action_repeat"}
@@ -539,7 +539,7 @@ def episode_of(policy: Policy, task: Optional[TaskName] = None, *, seed: int = 0
     known = policy.info.task or (origin.task if origin else None)
     name = known if task is None else task_name(task)
     if not name:
-        raise ArgumentError("episode: say which task")
+        raise ArgumentError("episode: the task is missing: give task=")
     laid: dict[str, Any] = {}
     limits: Optional[Mapping[str, float]] = None
     own = None

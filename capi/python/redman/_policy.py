@@ -104,7 +104,7 @@ class Policy(Hinted):
     def __init__(self, data: bytes, origin: Optional[Origin] = None) -> None:
         self._bytes = bytes(data)
         if self._bytes[:len(_MAGIC)] != _MAGIC:
-            raise FormatError("policy: these bytes are no policy file of redman (.rdm)")
+            raise FormatError("policy: these bytes are not a policy file of redman (.rdm)")
         self.origin = origin
         self._handle = Handle(lib.rdm_policy_read, lib.rdm_policy_destroy, self._bytes, len(self._bytes))
         self.info = _abi.PolicyInfo(filled(_abi.rdm_policy_info, lib.rdm_policy_get_info, self._handle.value))
@@ -198,10 +198,10 @@ class Policy(Hinted):
         if remembers and state is None:
             state, noise = noise, None
         if remembers and state is None:
-            raise ArgumentError("state: this policy has a memory; action, state = policy.act(obs, state), from "
-                                "policy.start(rows) on, or use an actor")
+            raise ArgumentError("state: it is missing, and this policy has a memory: call action, state = policy.act(obs, state), beginning "
+                                "with state = policy.start(rows), or use an actor")
         if not remembers and state is not None and np.size(state):
-            raise ArgumentError("state: this policy has no memory")
+            raise ArgumentError("state: it cannot be given, since this policy has no memory")
         rows_of = _abi.FUNCTIONS["rdm_policy_act"].rows
         observed = np.asarray(obs)
         if observed.ndim not in (1, 2) or observed.shape[-1] != self.info.obs_dim:
@@ -308,7 +308,7 @@ class Policy(Hinted):
             left, action, noise, fresh, *remembered = (part.copy() for part in state)
             memory = remembered[0] if remembered else self.start(len(rows))
             if action.shape != shape:
-                raise ArgumentError(f"state: of {len(action)} rows, not {len(rows)}")
+                raise ArgumentError(f"state: it has {len(action)} rows, but obs has {len(rows)}")
         if episode_start is not None:
             begun = np.broadcast_to(np.asarray(episode_start, bool), left.shape)
             left[begun], fresh[begun], memory[begun] = 0, True, 0
@@ -429,4 +429,4 @@ def policy_of(policy: Backup, task: _discovery.TaskName) -> Policy:
         return Policy.trained(task)
     if isinstance(policy, (str, os.PathLike)):
         return Policy.load(policy)
-    raise UsageError(f'policy: a redman.Policy, its file or run folder, or "trained", not {policy!r}')
+    raise UsageError(f'policy: it must be a redman.Policy, its file or run folder, or "trained", not {policy!r}')

@@ -338,7 +338,7 @@ class Pool(Hinted):
                 try:
                     listed = [operator.index(seed) for seed in seeds]  # type: ignore[union-attr]
                 except TypeError:
-                    raise UsageError(f"seeds: a whole number, one for each world, or None, not {seeds!r}") from None
+                    raise UsageError(f"seeds: it must be a whole number, a list with one for each world, or None, not {seeds!r}") from None
             wrong = [seed for seed in listed if not 0 <= seed < 1 << 64]
             if wrong:
                 raise ArgumentError(f"seeds: {wrong[0]} is not between 0 and 2^64 - 1")
@@ -400,7 +400,7 @@ class Pool(Hinted):
         has states if it was made from a pool; None: keeps the states of the last call, with another share. Such an episode
         has only the steps that were left of the recorded one. All other random numbers are the same as without."""
         if recording is not None and not hasattr(recording, "_handle"):
-            raise UsageError(f"recording: a redman.Recording or None, not {recording!r}")
+            raise UsageError(f"recording: it must be a redman.Recording or None, not {recording!r}")
         with self._lock:
             self._check(lib.rdm_pool_set_starts(self._open(), None if recording is None else recording._handle.value, share))
             self._starts = (self._starts[0] if recording is None else recording, share)

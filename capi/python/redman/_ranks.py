@@ -34,7 +34,8 @@ class Ranks:
         if not 0 <= rank < ranks:
             raise ArgumentError(f"rank: {rank} is not between 0 and {ranks - 1}")
         if gather is None and ranks > 1:
-            raise UsageError("gather: how messages of several ranks are exchanged, as comm.allgather of mpi4py")
+            raise UsageError("gather: it is missing: give the function that exchanges the messages of several ranks, such as "
+                             "comm.allgather of mpi4py")
         self.rank, self.ranks = rank, ranks
         self._messages = gather
         self._struct = sized(_abi.rdm_ranks)
@@ -60,7 +61,7 @@ def _gathering(gather: Gather, ranks: int) -> Callable[..., int]:
         messages = gather(ctypes.string_at(mine, size))
         lengths = [len(message) for message in messages]
         if lengths != [size] * ranks:
-            raise ArgumentError(f"gather: messages of {lengths} bytes, not {ranks} of {size}")
+            raise ArgumentError(f"gather: it returned messages of {lengths} bytes, but must return {ranks} of {size} bytes")
         ctypes.memmove(every, b"".join(messages), size * ranks)
         return 0
     return hook
@@ -70,7 +71,7 @@ def _swapping(swap: Swap) -> Callable[..., int]:
     def hook(_: Any, partner: int, mine: int, size: int, theirs: int) -> int:
         message = swap(partner, ctypes.string_at(mine, size))
         if len(message) != size:
-            raise ArgumentError(f"swap: a message of {len(message)} bytes, not {size}")
+            raise ArgumentError(f"swap: it returned a message of {len(message)} bytes, but must return {size} bytes")
         ctypes.memmove(theirs, bytes(message), size)
         return 0
     return hook

@@ -61,9 +61,9 @@ class Recording(Hinted):
         check(lib.rdm_recording_config_init(byref(config), ctypes.sizeof(config)))
         if pool is not None:
             if not isinstance(pool, Pool):
-                raise UsageError(f"pool: a redman.Pool, not {pool!r}; redman.Recording.load(path) reads a file")
+                raise UsageError(f"pool: it must be a redman.Pool, not {pool!r}; redman.Recording.load(path) reads a file")
             if obs_dim is not None or action_dim is not None:
-                raise ArgumentError("recording: a pool brings its dimensions; give it or them")
+                raise ArgumentError("recording: give either a pool, or obs_dim and action_dim")
             check(lib.rdm_recording_config_for_pool(byref(config), pool._open()))
         else:
             if obs_dim is None or action_dim is None:
@@ -135,7 +135,7 @@ class Recording(Hinted):
         """
         if other is not None:
             if not isinstance(other, Recording):
-                raise UsageError(f"append: a redman.Recording, or obs=..., action=..., not {other!r}")
+                raise UsageError(f"append: give a redman.Recording, or obs=..., action=..., not {other!r}")
             first, second = sorted((self, other), key=id)
             with first._lock, second._lock:
                 check(lib.rdm_recording_append_all(self._handle.value, other._handle.value))

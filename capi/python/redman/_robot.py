@@ -187,5 +187,5 @@ def robot(name: RobotName) -> Robot:
     if isinstance(name, Robot):
         return name
     if not isinstance(name, (str, os.PathLike)):
-        raise UsageError(f"robot: a name or a file, not {name!r}")
+        raise UsageError(f"robot: it must be a name or a file, not {name!r}")
     return robot_at(_discovery.find(lib.rdm_robot_find, named("robot", name)))

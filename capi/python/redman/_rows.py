@@ -75,10 +75,10 @@ def _cast(array: Array, dtype: np.dtype[Any], name: str) -> Array:
         return array.view(np.uint8)
     whole = array.dtype.kind in "iu" and dtype.kind in "iu"
     if not whole and not np.can_cast(array.dtype, dtype, "same_kind"):
-        raise ArgumentError(f"{name}: an array of {dtype}, not of {array.dtype}")
+        raise ArgumentError(f"{name}: it must be an array of {dtype}, not of {array.dtype}")
     changed = array.astype(dtype)
     if whole and not np.array_equal(changed, array):
-        raise ArgumentError(f"{name}: a value that {dtype} cannot hold")
+        raise ArgumentError(f"{name}: it has a value that {dtype} cannot hold")
     return changed
 
 

@@ -188,7 +188,7 @@ class SceneBuilder:
 
     def _scene(self) -> c_void_p:
         if self._handle is None:
-            raise ArgumentError("scene: it can be used within Task.scene alone")
+            raise ArgumentError("scene: it can only be used within Task.scene")
         return c_void_p(self._handle)
 
     def _end(self) -> None:

@@ -84,7 +84,7 @@ class Shield(Hinted):
     def __init__(self, pool: Pool, policy: Optional[Backup] = None, *, seed: int = 0, threads: int = 0,
                  steps: Optional[int] = None, budgets: CostLimits = None, options: Optional[Options] = None) -> None:
         if not isinstance(pool, Pool):
-            raise UsageError(f"pool: a redman.Pool, not {pool!r}; an environment takes shield=True")
+            raise UsageError(f"pool: it must be a redman.Pool, not {pool!r}; an environment takes shield=True")
         usual = [0.0, *[-1.0] * (pool.cost_dim - 1)][:pool.cost_dim]
         own = {"seed": seed, "num_threads": threads, "steps": 0 if steps is None else steps, "options": dict(options or {}),
                "budgets": each_cost(budgets, usual, list(pool.costs), "budgets")}
@@ -284,10 +284,10 @@ def shield_of(pool: Pool, wanted: Shielding, policy: Optional[Backup], steps: in
     """The shield for the shield= argument of an environment or an evaluation."""
     if wanted is None or wanted is False:
         if policy is not None:
-            raise ArgumentError("shield_policy: there is no shield that it would be a backup of; shield=True")
+            raise ArgumentError("shield_policy: it is the backup of a shield, and there is none: give shield=True too")
         return None
     if wanted is not True and not isinstance(wanted, Mapping):
-        raise UsageError(f"shield: True, or a dict of options, budgets, seed and threads, not {wanted!r}")
+        raise UsageError(f"shield: it must be True, or a dict of options, budgets, seed and threads, not {wanted!r}")
     options = {} if wanted is True else dict(wanted)
     own = {name: options.pop(name) for name in ("budgets", "seed", "threads") if name in options}
     return Shield(pool, policy, steps=steps, options=options, **own)

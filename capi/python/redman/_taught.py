@@ -54,7 +54,7 @@ def begin(arguments: Iterator[str], folder: Path, told: bool) -> None:
         raise UnsupportedError("from_: this teacher needs the command redman, which was not found: it is not in this package, it is not on "
                                "PATH, and REDMAN_TOOL is not set")
     if os.name != "posix":
-        raise UnsupportedError("from_: this teacher acts in the command: redman train --from")
+        raise UnsupportedError("from_: this teacher acts in the command redman, which cannot be started from here: use redman train --from")
     said: list[str] = []
     # Ctrl-C is for this process, which ends the other one
     with subprocess.Popen([tool, "train", *arguments, "--out", os.fspath(folder)], stdin=subprocess.DEVNULL,

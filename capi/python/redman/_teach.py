@@ -145,4 +145,4 @@ class Taught:
 
 def _is_recording(recording: Any) -> None:
     if not isinstance(recording, Recording):
-        raise UsageError(f"recording: a redman.Recording, not {recording!r}; redman.Recording.load(path) reads a file")
+        raise UsageError(f"recording: it must be a redman.Recording, not {recording!r}; redman.Recording.load(path) reads a file")

@@ -41,7 +41,7 @@ def _steps(steps: float) -> int:
     try:
         goal = int(steps)
     except TypeError:
-        raise UsageError(f"steps: a number, not {steps!r}") from None
+        raise UsageError(f"steps: it must be a number, not {steps!r}") from None
     except (ValueError, OverflowError):
         goal = 0
     if not 1 <= goal <= _MOST_STEPS or goal != steps:
@@ -51,7 +51,7 @@ def _steps(steps: float) -> int:
 
 def _seed(seed: Any) -> int:
     if not hasattr(seed, "__index__"):
-        raise UsageError(f"seed: a whole number, or a list of such for several runs, not {seed!r}")
+        raise UsageError(f"seed: it must be a whole number, or a list of whole numbers for several runs, not {seed!r}")
     return whole(seed, "seed", 0, (1 << 64) - 1)
 
 
@@ -286,7 +286,7 @@ def _wanted(given: Mapping[str, Any]) -> Settings:
     teach = Teach.wanted(given["from_"], given["teach"], known)
     name = known if known is not None or teach is None else teach.task
     if name is None:
-        raise UsageError("train: say which task, or resume=folder")
+        raise UsageError("train: the task is missing: give a task, or resume=folder")
     name = _discovery.task(name).name
     algo = _discovery.algo(algo).name
     seed, envs = _seed(given["seed"]), whole(given["envs"], "envs", 1, (1 << 31) - 1)

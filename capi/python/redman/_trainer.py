@@ -142,11 +142,11 @@ def shield_word(wanted: Any) -> str:
     if isinstance(wanted, str):
         return wanted
     if not isinstance(wanted, Mapping):
-        raise UsageError(f"shield: True, a dict of options, or a word as \"project\", not {wanted!r}")
+        raise UsageError(f"shield: it must be True, a dict of options, or a word such as \"project\", not {wanted!r}")
     options = dict(wanted)
     for name in ("budgets", "seed", "threads"):
         if name in options:
-            raise UnsupportedError(f"shield: {name} is not of train: set agent.shield = redman.Shield(pool, {name}=...) and call "
+            raise UnsupportedError(f"shield: train does not take {name}: set agent.shield = redman.Shield(pool, {name}=...) and call "
                                    "agent.rollout")
     word = "predict" if options.pop("predict", True) else "project"
     return word + ":" * bool(options) + ",".join(f"{key}={shown(key, value)}" for key, value in options.items())
@@ -331,10 +331,10 @@ class Trainer(Training):
     def _add_shield(self) -> None:
         """Puts the rollouts under a shield, whose first backup is the agent itself."""
         if self.settings.own is not None:
-            raise UnsupportedError("shield: it knows the costs of the task alone; train costs of your own without it")
+            raise UnsupportedError("shield: it knows only the costs of the task: train with costs of your own without a shield")
         options = _shield_options(self.settings.shield)
         if not options["predict"] and not self._pool.guards:
-            raise UsageError("shield: the task declares no guards, since its costs are not of the action alone: \"predict\"")
+            raise UsageError("shield: \"project\" needs a task with guards, whose costs depend on the action only; give shield=\"predict\"")
         self._shield = Shield(self._pool, seed=self.settings.seed, options=options,
                               steps=int(self.agent.options["action_repeat"]) // self._pool.spec.action_repeat)
         self.agent.shield = self._shield

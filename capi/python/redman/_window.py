@@ -382,7 +382,7 @@ def view(shown: Any, *, policy: Union[None, Policy, str, os.PathLike[str]] = Non
         raise ArgumentError("shield: it is not a shield of this pool; worlds of the command redman have one of their own")
     if isinstance(shown, Pool):
         if policy is not None or options:
-            raise UsageError("view: what acts in a pool, and its options, are those of the pool")
+            raise UsageError("view: policy and options cannot be given with a pool, which has its own")
         return PoolWindow(shown, env, _worlds(shown, env, num_envs), "python", page=page)
     if isinstance(shown, Run):
         shown = shown.policy
@@ -395,7 +395,7 @@ def view(shown: Any, *, policy: Union[None, Policy, str, os.PathLike[str]] = Non
             return _of_tool(wanted, [policy or "hold"], num_envs, seed, options, page)
         shown = policy_of(policy, wanted)
     elif policy is not None:
-        raise UsageError("view: a policy is shown already; give the task and policy=")
+        raise UsageError("view: give the task first and the policy as policy=")
     return _of_policy(shown, task, num_envs, seed, options, page)
 
 
@@ -436,7 +436,7 @@ def _of_policy(policy: Policy, task: Optional[TaskName], num_envs: Optional[int]
     origin = policy.origin
     name = task_name(task) if task is not None else policy.info.task or (origin.task if origin else "")
     if not name:
-        raise ArgumentError("view: say which task: redman.view(task, policy=policy)")
+        raise ArgumentError("view: the task is missing: redman.view(task, policy=policy)")
     if task is None and origin is not None and origin.folder is not None and origin.own is None and _same(policy, origin.folder):
         return Window(["--policy", origin.folder, *_flags(num_envs, seed, options)], fed=False, page=page)
     laid: dict[str, Any] = dict(origin.options) if origin is not None and origin.task == name else {}

@@ -30,11 +30,11 @@ def center_of(pool: Pool, center: Center) -> Optional[FloatArray]:
         return None
     if isinstance(center, str):
         if center != "initial":
-            raise ValueError(f'center: None, "initial" or [{pool.action_dim}] numbers, not "{center}"')
+            raise ValueError(f'center: it must be None, "initial" or [{pool.action_dim}] numbers, not "{center}"')
         return pool.initial_mean
     given = np.array(center, np.float32)
     if given.shape != (pool.action_dim,) or not np.all(np.abs(given) <= 1):
-        raise ValueError(f"center: [{pool.action_dim}] numbers in [-1, 1], not {given.shape}")
+        raise ValueError(f"center: it must be [{pool.action_dim}] numbers in [-1, 1], not {given.shape}")
     return given
 
 
@@ -139,7 +139,7 @@ class Worlds:
             seed = [int(seed) + i for i in range(n)]
         seeds: list[Optional[int]] = [None] * n if seed is None else list(seed)
         if len(seeds) != n:
-            raise ValueError(f"seed: one for each of {n} worlds, not {len(seeds)}")
+            raise ValueError(f"seed: give one for each of the {n} worlds, not {len(seeds)}")
         for s in seeds:
             if s is not None and not 0 <= s < 2**64:
                 raise ValueError(f"seed: {s} is outside [0, 2^64)")
@@ -176,7 +176,7 @@ class Worlds:
         if rows.dtype != np.float64:  # an actor's about the center, whose sum is then exact
             rows = np.asarray(rows, np.float32)
         if rows.shape != to.shape:
-            raise ValueError(f"action: shape {to.shape}, not {rows.shape}")
+            raise ValueError(f"action: its shape must be {to.shape}, not {rows.shape}")
         if self.center is None:
             to[...] = rows
         else:

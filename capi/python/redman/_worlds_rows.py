@@ -51,7 +51,7 @@ class Worlds:
     def state(self) -> Any:
         """The state that the task keeps (Task.state), by name: w.state["goal"] is [n][count] and can be written."""
         if self._states is None:
-            raise ArgumentError("state: the task's class has none; state = {\"goal\": 3} gives it one")
+            raise ArgumentError("state: the class of the task has no state: give it one, such as state = {\"goal\": 3}")
         return self._states
 
     @property
@@ -226,7 +226,7 @@ class Worlds:
 
     def _draw(self, draw: Callable[[int], float], count: Optional[int]) -> Any:
         if not self._randoms:
-            raise ArgumentError("uniform, normal: reset alone draws; with draws = True in the task's class control and judge do, too")
+            raise ArgumentError("uniform, normal: they can only be used in reset; with draws = True in the class of the task also in control and judge")
         first, stride = self._randoms, self._stride
         out = np.array([[draw(first + i * stride) for _ in range(1 if count is None else count)] for i in range(self.n)])
         return out[:, 0] if count is None else out
@@ -265,7 +265,7 @@ class Worlds:
         if array.ndim < 2:
             array = np.broadcast_to(array, (self.n, array.size))
         if array.shape[0] != self.n:
-            raise ArgumentError(f"shape {array.shape}: a row for each of {self.n} worlds")
+            raise ArgumentError(f"an array of shape {array.shape} was given, but it must have a row for each of {self.n} worlds")
         return np.ascontiguousarray(array)
 
     def _motions(self, p: Any, q: Any, v: Any, w: Any) -> Any:

@@ -112,12 +112,12 @@ class Calls(Callback):
 
 def _callback(given: Any) -> Callback:
     if isinstance(given, type):
-        raise UsageError(f"callback: an object, {given.__name__}(), not the class")
+        raise UsageError(f"callback: give an object, {given.__name__}(), not the class")
     if isinstance(given, Callback):
         return given
     if callable(given):
         return _Called(given)
-    raise UsageError(f"callback: a function of the epoch, or of (epoch, training), a redman.callbacks.Callback, or a list of "
+    raise UsageError(f"callback: it must be a function of the epoch, or of (epoch, training), a redman.callbacks.Callback, or a list of "
                      f"these, not {given!r}")
 
 
@@ -152,7 +152,7 @@ class Curriculum(Callback):
     def __init__(self, options: Mapping[str, Union[Sequence[Value], tuple[float, float]]], until: float = 0.8,
                  stages: int = 10) -> None:
         if not 0 < until <= 1:
-            raise ArgumentError(f"until: {until} is no share of a run, above 0 and up to 1")
+            raise ArgumentError(f"until: it must be a share of the run, above 0 and at most 1, not {until}")
         if stages < 2:
             raise ArgumentError(f"stages: {stages} is less than 2")
         self._until = until
@@ -160,11 +160,11 @@ class Curriculum(Callback):
         for key, values in options.items():
             if isinstance(values, tuple):
                 if len(values) != 2 or not all(isinstance(value, (int, float)) for value in values):
-                    raise ArgumentError(f"{key}: a pair of numbers, (first, last), or a list of values, not {values!r}")
+                    raise ArgumentError(f"{key}: give a pair of numbers, (first, last), or a list of values, not {values!r}")
                 low, high = map(float, values)
                 self._values[key] = [low + (high - low) * k / (stages - 1) for k in range(stages)]
             elif isinstance(values, str) or not values:
-                raise ArgumentError(f"{key}: a pair of numbers, (first, last), or a list of values, not {values!r}")
+                raise ArgumentError(f"{key}: give a pair of numbers, (first, last), or a list of values, not {values!r}")
             else:
                 self._values[key] = list(values)
 

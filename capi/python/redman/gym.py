@@ -79,7 +79,7 @@ class _Named:
     def _begin(self, worlds: Worlds, render_mode: Optional[str], named: bool) -> tuple[Any, Any]:
         """Takes over the worlds; returns the spaces of one of them."""
         if render_mode is not None and render_mode not in _MODES_OF_RENDER:
-            raise ArgumentError(f"render_mode: None, {', '.join(map(repr, _MODES_OF_RENDER))}, not {render_mode!r}")
+            raise ArgumentError(f"render_mode: {render_mode!r} is none of None, {', '.join(map(repr, _MODES_OF_RENDER))}")
         if render_mode is not None and render_mode.endswith("_list"):
             self._kept = [[] for _ in range(worlds.pool.num_envs)]
         self.worlds, self.render_mode, self.named = worlds, render_mode, named
@@ -248,7 +248,7 @@ class VectorEnv(_Named, _VectorEnv):
                  shield_policy: Optional[Backup] = None, observe: Observe = None) -> None:
         mode = getattr(autoreset_mode, "value", autoreset_mode) or ("SameStep" if _OLD else "NextStep")
         if mode not in _MODES:
-            raise ArgumentError(f"autoreset_mode: {', '.join(_MODES)}, not {mode}")
+            raise ArgumentError(f"autoreset_mode: {mode} is none of {', '.join(_MODES)}")
         worlds = Worlds(task, num_envs, seed=seed, autoreset=_MODES[mode], options=options, threads=threads,
                         action_repeat=action_repeat, center=center, camera=camera, width=width, height=height,
                         shield=shield, shield_policy=shield_policy, observe=observe,
@@ -273,7 +273,7 @@ class VectorEnv(_Named, _VectorEnv):
         mask = (options or {}).get("reset_mask")
         if mask is not None and not (isinstance(mask, np.ndarray) and mask.shape == (self.num_envs,)
                                      and mask.dtype == bool and mask.any()):
-            raise ArgumentError(f"reset_mask: an array of {self.num_envs} bool, one of them True")
+            raise ArgumentError(f"reset_mask: it must be an array of {self.num_envs} bool, at least one of them True")
         self.worlds.reset(seed, mask)
         self._ended = np.zeros(self.num_envs, bool) if mask is None else self._ended & ~mask
         began = np.ones(self.num_envs, bool) if mask is None else mask

@@ -148,7 +148,7 @@ def pull(repository: str, *, revision: Optional[str] = None, token: Optional[str
     _named(repository)
     folder = Path(_client().snapshot_download(repository, revision=revision, token=token, allow_patterns=list(_SHARED)))
     if not (folder / "policy.rdm").is_file():
-        raise FormatError(f"hub.pull: {repository} has no policy.rdm: it is not of redman")
+        raise FormatError(f"hub.pull: {repository} has no policy.rdm: it is not a policy of redman")
     named = [] if imports else _imported(folder / "config.json")
     if named:
         raise StateError(f"hub.pull: {repository} names code in Python ({', '.join(named)}): give imports=True if you trust it")

@@ -76,7 +76,7 @@ class Redman(CMDP):
                  height: int = 256, **settings: Any) -> None:
         super().__init__(env_id)
         if render_mode not in (None, "rgb_array"):
-            raise ArgumentError(f'render_mode: None or "rgb_array", not {render_mode!r}')
+            raise ArgumentError(f'render_mode: it must be None or "rgb_array", not {render_mode!r}')
         task, own = _IDS[env_id]
         self._num_envs, self._device = num_envs, torch.device(device)
         self._worlds = Worlds(task, num_envs, autoreset="same_step", width=width, height=height, senses=_VECTORS,
@@ -164,7 +164,7 @@ def configs(task: str, algo: str = "PPOLag", steps: float = 2e6, options: Option
     register() with the same options. You may change the returned dict before passing it on.
     """
     if algo not in ALGORITHM2TYPE:
-        raise NotFoundError(f"algorithm {algo!r}: OmniSafe has no such one{nearest(algo, ALGORITHM2TYPE)}")
+        raise NotFoundError(f"algorithm {algo!r}: OmniSafe has no algorithm of that name{nearest(algo, ALGORITHM2TYPE)}")
     d, kind = defaults(task, options), ALGORITHM2TYPE[algo]
     # An epoch of OmniSafe begins with a reset: whole episodes, or their ends are never seen.
     decisions = num_envs * d.episode * -(-2 * d.horizon // d.episode)

@@ -60,13 +60,13 @@ class _Team:
     def row(self, actions: Mapping[str, Any]) -> FloatArray:
         """The actions of all agents of one world as one row."""
         if actions.keys() != self.named.keys():
-            raise ArgumentError(f"actions: of {', '.join(self.named)}, not of {', '.join(actions) or 'nobody'}")
+            raise ArgumentError(f"actions: they must be those of {', '.join(self.named)}, not of {', '.join(actions) or 'nobody'}")
         row = np.empty(self.worlds.pool.action_dim, np.float32)
         for name, group in self.named.items():
             own = np.asarray(actions[name], np.float32)
             wanted = group.actions.stop - group.actions.start
             if own.shape != (wanted,):
-                raise ArgumentError(f"actions: {name} has {wanted} entries, not {own.shape}")
+                raise ArgumentError(f"actions: those of {name} must have the shape ({wanted},), not {own.shape}")
             row[group.actions] = own
         return row
 
@@ -85,7 +85,7 @@ class ParallelEnv(_ParallelEnv):  # type: ignore[misc,valid-type]
                  width: int = 320, height: int = 240, action_repeat: Union[int, str] = 1, center: Center = None,
                  shield: Shielding = None, shield_policy: Optional[Backup] = None) -> None:
         if render_mode not in (None, "rgb_array"):
-            raise ArgumentError(f"render_mode: None or 'rgb_array', not {render_mode!r}")
+            raise ArgumentError(f"render_mode: it must be None or 'rgb_array', not {render_mode!r}")
         self._team = _Team(task, groups, 1, "off", seed=seed, options=options, action_repeat=action_repeat, center=center,
                            camera=camera, width=width, height=height, shield=shield, shield_policy=shield_policy)
         self.render_mode = render_mode
@@ -194,12 +194,12 @@ class SafeEnv:
         [num_envs][agents][1], dones [num_envs][agents], infos and None."""
         w, team = self.worlds, self._team.groups
         if len(actions) != len(team):
-            raise ArgumentError(f"actions: of {len(team)} agents, not of {len(actions)}")
+            raise ArgumentError(f"actions: give those of {len(team)} agents, not of {len(actions)}")
         rows = np.empty((self.num_envs, w.pool.action_dim), np.float32)
         for group, own in zip(team, actions):
             wanted = (self.num_envs, group.actions.stop - group.actions.start)
             if np.shape(own) != wanted:
-                raise ArgumentError(f"actions: {group.name} has shape {wanted}, not {np.shape(own)}")
+                raise ArgumentError(f"actions: those of {group.name} must have the shape {wanted}, not {np.shape(own)}")
             rows[:, group.actions] = own
         w.act(rows)
         w.pool.step()

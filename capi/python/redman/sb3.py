@@ -59,7 +59,7 @@ class VecEnv(_VecEnv):
                  action_repeat: Union[int, str] = 1, center: Center = None, penalty: float = 0.0,
                  shield: Shielding = None, shield_policy: Optional[Backup] = None) -> None:
         if render_mode not in (None, "rgb_array"):
-            raise ArgumentError(f'render_mode: None or "rgb_array", not {render_mode!r}')
+            raise ArgumentError(f'render_mode: it must be None or "rgb_array", not {render_mode!r}')
         self.worlds = Worlds(task, num_envs, seed=seed, autoreset="same_step", options=options, threads=threads,
                              action_repeat=action_repeat, center=center, camera=camera, width=width, height=height,
                              shield=shield, shield_policy=shield_policy, senses=_NO_LAST_LOOK)
@@ -162,7 +162,7 @@ class VecEnv(_VecEnv):
     def set_attr(self, attr_name: str, value: Any, indices: Indices = None) -> None:
         """Sets this object's attribute; all worlds share it."""
         if len(list(self._get_indices(indices))) != self.num_envs:
-            raise ValueError(f"{attr_name}: the worlds of a pool share it; set it for all")
+            raise ValueError(f"{attr_name}: the worlds of a pool share it: set it for all of them")
         setattr(self, attr_name, value)
 
     def env_method(self, method_name: str, *method_args: Any, indices: Indices = None, **method_kwargs: Any) -> list[Any]:
