@@ -9,7 +9,7 @@
 
 namespace rdm {
 
-// Bins of 22.5 degrees, counted from straight ahead to the left; 1 is touching, 0 out of range.
+// Bins of 22.5 degrees, counted from the x axis of the robot anticlockwise; 1 is touching, 0 out of range.
 inline constexpr int kLidarBins = 16;
 class Lidar {
  public:
