@@ -313,7 +313,7 @@ void Agent::take_statistics(const LearnRows& rows) {
 }
 
 void Agent::end_learning() {
-  restart_average(nets_);
+  if (nets_.average && *nets_.averaged == 0) restart_average(nets_);
   sampler_ = 0;
 }
 

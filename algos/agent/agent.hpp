@@ -189,7 +189,7 @@ class Agent {
   void need_idle(const char* call) const;  // Error(kState) inside a horizon
   // For learn: statistics of observations become those of the rows.
   void take_statistics(const LearnRows& rows);
-  // Likewise: the actor has learned, and policy files are to have it as it is.
+  // Likewise: the actor has learned. Until its first mean is taken, policy files have it as it is.
   void end_learning();
   // Multiplier of limited cost i.
   virtual double cost_weight(int32_t) const { return 0; }

@@ -44,7 +44,7 @@ double ReplayAgent::sum_of_values(int32_t i) const {
   return n / h.values;
 }
 
-// The weights move at whole multiples, so it does not matter how many steps a call takes.
+// The weights move, and the actor's mean is taken, at whole multiples, so it does not matter how many steps a call takes.
 void ReplayAgent::learn_steps(int64_t steps) {
   while (steps > 0) {
     const int64_t since = steps_ % kStepsOfWeights;
@@ -57,6 +57,10 @@ void ReplayAgent::learn_steps(int64_t steps) {
     steps -= left_;
     for (stage_ = Stage::kDraw; left_ > 0; advance(true))
       if (stage_ == Stage::kDraw) check_cancel();
+    if (steps_ % kStepsOfWeights != 0) continue;
+    if (nets().average && *nets().averaged == 0)
+      restart_average(nets());  // the first is the actor to the bit
+    average_actor(nets());
   }
 }
 

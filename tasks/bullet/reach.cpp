@@ -25,7 +25,8 @@ namespace rdm {
 namespace {
 
 constexpr int32_t kMaxObstacles = 8, kSectors = 24;
-constexpr double kPuddle = 1, kPillar = 0.45;                       // m, radii
+constexpr double kPuddle = 1, kPillar = 0.45;  // m, radii
+constexpr double kTouch = 1e-6;  // m: a robot that leans on a pillar is at its edge, up to rounding
 constexpr double kBoxHalf = 0.5, kBoxHigh = 1.5, kBoxTravel = 0.7;  // m
 constexpr double kBoxMass = 5;                                      // kg
 constexpr double kBoxRate = 1;                                      // rad/s
@@ -126,7 +127,7 @@ class Reach final : public AgentTask<A> {
     s.last = now;
     v.success = now <= options_.goal_size && at.speed < kGoalSpeed;
     for (int32_t i = 0; i < options_.obstacles; ++i)
-      v.cost_raw[1] += distance({at.x, at.y}, s.obstacle[i]) <= kObstacle + A::kSize;
+      v.cost_raw[1] += distance({at.x, at.y}, s.obstacle[i]) <= kObstacle + A::kSize + kEdge;
     v.cost_raw[2] = s.box_hit;
     v.cost_raw[3] = at.z;
     v.cost[1] = v.cost_raw[1] > 0;
@@ -163,6 +164,7 @@ class Reach final : public AgentTask<A> {
 
  private:
   static constexpr double kObstacle = A::kPillars ? kPillar : kPuddle;
+  static constexpr double kEdge = A::kPillars ? kTouch : 0;
   static constexpr double kBoxBound = 1e5;  // m, well within a body's
   static constexpr int32_t kBox = A::kBodies, kGoal = kBox + 1, kFirstObstacle = kBox + 2;
 

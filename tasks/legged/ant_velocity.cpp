@@ -78,6 +78,10 @@ class AntVelocity final : public PlanarTask {
   EngineKind engine() const override { return EngineKind::kArticulated; }
   int32_t action_dim() const override { return kAntJoints; }
   const char* action_order() const override { return options_.own_order ? kAntOrder : kGymnasiumOrder; }
+  int32_t action_of(int32_t joint) const override {
+    const int32_t own = PlanarTask::action_of(joint);
+    return own < 0 ? own : entry_of(own);
+  }
   size_t state_bytes() const override { return sizeof(State); }
   void check_state(const void* state) const override {
     const State& s = *static_cast<const State*>(state);
@@ -109,8 +113,7 @@ class AntVelocity final : public PlanarTask {
     for (int32_t i = 0; i < kAntJoints; ++i)
       s.effort += static_cast<double>(action[i]) * static_cast<double>(action[i]);
     float in_order[kAntJoints];
-    for (int32_t i = 0; i < kAntJoints; ++i)
-      in_order[i] = action[options_.own_order ? i : (i + 2) % kAntJoints];
+    for (int32_t i = 0; i < kAntJoints; ++i) in_order[i] = action[entry_of(i)];
     drive_ant(world, in_order, kRange.gear);
   }
 
@@ -145,6 +148,9 @@ class AntVelocity final : public PlanarTask {
   }
 
  private:
+  // Entry of the action for motor i in the order of the joints: Gymnasium's order begins with the last leg.
+  int32_t entry_of(int32_t i) const { return options_.own_order ? i : (i + 2) % kAntJoints; }
+
   static Scene make() {
     PlanarScene scene(kStep * kSubsteps);
     make_walkable(scene, kStep, kSubsteps, kMu, kMu);

@@ -137,6 +137,46 @@ TEST(Learn, SameBytesForAnyThreadsAndCalls) {
   }
 }
 
+// With option average a policy file has the mean of what the policy was after each 100 steps; before the first 100, the
+// policy itself.
+TEST(Learn, PolicyFilesHaveTheMeanOverSteps) {
+  const Recorded r = noise(40, 4, 2, 2);
+  const auto make = [&](const char* share) {
+    AgentSetup s = learner("td3_bc_lag", r, "400");
+    return s.with("average", share).make();
+  };
+  const auto params = [](Agent& a) {
+    const std::vector<unsigned char> file = policy_file(a);
+    const std::unique_ptr<Policy, decltype(&Policy::destroy)> p(
+        Policy::read(file.data(), file.size(), HostHooks()), Policy::destroy);
+    return std::vector<double>(p->view().params, p->view().params + p->view().num_params());
+  };
+  const AgentPtr plain = make("0"), mean = make("0.75");
+  plain->learn(r.rows(), 60), mean->learn(r.rows(), 60);
+  EXPECT_EQ(params(*mean), params(*plain));
+  std::vector<double> wanted;
+  int taken = 0;
+  for (const int64_t steps : {40, 100, 100, 100, 100, 100, 70}) {
+    plain->learn(r.rows(), steps), mean->learn(r.rows(), steps);
+    const std::vector<double> now = params(*plain);
+    if (taken < 6) {  // the last call ends inside a hundred
+      const double share = std::max(0.25, 1.0 / ++taken);
+      if (taken == 1) wanted = now;
+      for (size_t i = 0; i < now.size(); ++i) wanted[i] += share * (now[i] - wanted[i]);
+    }
+    const std::vector<double> got = params(*mean);
+    ASSERT_EQ(got.size(), wanted.size());
+    double apart = 0;
+    for (size_t i = 0; i < got.size(); ++i) {
+      EXPECT_NEAR(got[i], wanted[i], 1e-6) << i << " after mean " << taken;
+      apart = std::max(apart, std::fabs(got[i] - now[i]));
+    }
+    if (taken > 1) {
+      EXPECT_GT(apart, 1e-4);
+    }
+  }
+}
+
 TEST(Learn, NoHeapAfterTheFirstCall) {
   if (!kHeapIsCounted) GTEST_SKIP() << "the heap is the sanitizer's here";
   const Recorded r = noise(40, 4, 2);

@@ -1,5 +1,8 @@
 // Bullet-Safety-Gym's Reach, with each of its agents.
+#include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "small_world.hpp"
 
@@ -90,11 +93,38 @@ TEST(Reach, TheBoxRunsInItsCircle) {
 }
 
 TEST(Reach, PillarsStopTheDroneAndPuddlesNobody) {
-  SmallWorld w("drone_reach", {{"max_steps", nullptr, 5000}});
+  constexpr int kWorlds = 32;
+  SmallWorld w("drone_reach", {}, kWorlds);
   for (int i = kFirst; i < kFirst + kObstacles; ++i)
     EXPECT_EQ(w.pool()->task().scene().def.bodies[static_cast<size_t>(i)].shapes[0].size.x, 0.45);
   SmallWorld ball("ball_reach");
   EXPECT_EQ(ball.pool()->task().scene().def.bodies[kFirst].shapes[0].size.x, 1);
+
+  // How near a drone is to its nearest pillar, and whether the step costs.
+  std::vector<std::pair<double, bool>> steps;
+  for (int t = 0; t < 1500; ++t) {
+    w.pool()->baseline(Baseline::kRandom);
+    w.pool()->step(nullptr);
+    for (int32_t e = 0; e < kWorlds; ++e) {
+      if (w.pool().rows().terminated[e] || w.pool().rows().truncated[e])
+        continue;  // the next episode's place
+      const World& world = w.pool()->world(e);
+      double near = 1e9;
+      for (int i = kFirst; i < kFirst + kObstacles; ++i)
+        near = std::min(near, flat(world.body(i).X.p, world.body(0).X.p));
+      steps.emplace_back(near, w.pool().rows().cost[e * w.pool()->cost_dim() + 1] > 0);
+    }
+  }
+  const double edge = std::min_element(steps.begin(), steps.end())->first;
+  EXPECT_NEAR(edge, 0.45 + 0.5, 1e-6);
+  int leaning = 0;
+  for (const auto& [near, costs] : steps) {
+    const bool leans = near < edge + 5e-7;
+    leaning += leans;
+    if (!leans && near < edge + 2e-6) continue;  // rounding decides there
+    EXPECT_EQ(costs, leans) << near - edge;
+  }
+  EXPECT_GT(leaning, 20);
 }
 
 TEST(Reach, TheGoalIsSeenFromTheAgent) {
