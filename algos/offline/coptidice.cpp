@@ -50,7 +50,7 @@ struct DiceOwnOptions {
 };
 constexpr auto kDiceOwnRows = option_rows<DiceOwnOptions>(
     row<&DiceOwnOptions::alpha>(basic(
-        number_option("alpha", 0.1, 1e-6, 1e6,
+        number_option("dice_alpha", 0.1, 1e-6, 1e6,
                       "weight of the divergence from the recording, in deviations of the reward", true))),
     row<&DiceOwnOptions::divergence, Divergence::kSoftChi2, Divergence::kChi2, Divergence::kKl>(
         text_option("divergence", "soft_chi2", "soft_chi2|chi2|kl",

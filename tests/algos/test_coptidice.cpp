@@ -21,7 +21,7 @@ AgentSetup dice(const Recorded& r, const std::vector<OptionInput>& more) {
                 {"learning_rate", "1e-2", 0},
                 {"normalize_obs", "off", 0},
                 {"last_layer_scale", "1", 0},
-                {"alpha", "0.7", 0},
+                {"dice_alpha", "0.7", 0},
                 {"std_min", "0.4", 0},
                 {"std_max", "0.6", 0},
                 {"multiplier_init", "0.6", 0},
@@ -238,7 +238,7 @@ TEST(COptiDice, FindsTheWeightsOfAClosedForm) {
                           {"cost_bound", "0", 0},
                           {"batch_rows", "210", 0},
                           {"discount", "1", 0},
-                          {"alpha", "2", 0},
+                          {"dice_alpha", "2", 0},
                           {"cost_limit", "0.26", 0},
                           {"learning_rate", "3e-3", 0},
                           {"multiplier_lr", "3e-3", 0}});

@@ -284,4 +284,21 @@ TEST(Discovery, SurvivesBadCalls) {
   EXPECT_EQ(rdm_task_field_at(rdm_task_count(), 0, &field), RDM_ERROR_RANGE);
 }
 
+// `--set key=value` of the tool and the settings of a run folder name an option without its owner: one word must not set two.
+// action_repeat is how often an agent decides; the tool gives it to the agent alone.
+TEST(Discovery, NoOptionOfATaskIsCalledAsOneOfAnAlgorithm) {
+  std::set<std::string> of_tasks;
+  for (int32_t t = 0; t < rdm_task_count(); ++t) {
+    rdm_option_spec o = RDM_INIT(rdm_option_spec);
+    for (int32_t i = 0; rdm_task_option_at(t, i, &o) == RDM_OK; ++i) of_tasks.insert(o.key);
+  }
+  std::set<std::string> both;
+  for (int32_t a = 0; a < rdm_algo_count(); ++a) {
+    rdm_option_spec o = RDM_INIT(rdm_option_spec);
+    for (int32_t i = 0; rdm_algo_option_at(a, i, &o) == RDM_OK; ++i)
+      if (of_tasks.count(o.key)) both.insert(o.key);
+  }
+  EXPECT_EQ(both, std::set<std::string>{"action_repeat"});
+}
+
 }  // namespace
