@@ -264,7 +264,7 @@ class Doors(unittest.TestCase):
 
     @unittest.skipUnless(TOOL, "the command-line tool was not built")
     def test_a_run_whose_pool_steps_faster_is_the_tools(self):
-        for task, more in ((TASK, {"object": "tennis_ball"}), ("ball_run", {"cost_signal": "raw"})):
+        for task, more in ((TASK, {"object": "tennis_ball"}), ("ball_run", {"cost_signal": "raw"}), ("jenga", {"preset": "real"})):
             with tempfile.TemporaryDirectory() as folder:
                 ours, theirs = Path(folder, "a"), Path(folder, "b")
                 options = {"action_repeat": 2, "horizon": 16, **more}

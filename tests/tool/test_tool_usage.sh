@@ -115,6 +115,13 @@ for file in a.png b.png curve.svg c.glb report.html run/config.json run/progress
   [ -s "$file" ] || { echo "$file was not written"; failed=1; }
 done
 
+# Of an option that task and algorithm have, the value says whose it is; what neither takes is refused with the words of one.
+json cost train --task jenga --envs 1 --steps 8 --set max_steps=8 --set preset=real --set preset=omnisafe --overwrite --out whose
+grep -q '"preset=real"' whose/config.json || { echo "the task has no preset: $(cat whose/config.json)"; failed=1; }
+grep -q '"preset=omnisafe"' whose/config.json || { echo "the algorithm has no preset: $(cat whose/config.json)"; failed=1; }
+json cost train --task hand_over_safe_finger --envs 1 --steps 8 --set max_steps=8 --set cost_signal=target --set cost_signal=raw --overwrite --out whose
+expect 2 "'best' is not one of redman|real" train --task jenga --steps 8 --set preset=best --out whose2
+
 # A run that learned magnitudes is judged by magnitudes, wherever it is met again.
 signal() { grep -q "\"cost_signal\":\"$1\"" out || { echo "costs that are not $1: $(cat out)"; failed=1; }; }
 json cost train --task ball_circle --envs 4 --steps 400 --set max_steps=20 --set cost_signal=raw --out raw

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any, Iterator, Mapping, Optional, Sequence
 import numpy as np
 
 from . import _abi, _discovery, _own_files as own_files
+from ._abi import OptionKind
 from ._agent import Agent, Epoch
 from ._error import ArgumentError, FormatError, NotFoundError, StateError, UnsupportedError, UsageError
 from ._library import check, encoded, lib
@@ -105,8 +106,9 @@ def _limits_of(texts: Sequence[str], columns: Sequence[str]) -> dict[str, Option
 
 
 def split_options(task: str, algo: str, options: Options) -> tuple[list[tuple[str, Value]], list[tuple[str, Value]]]:
-    """Splits options into those of the task and those of the algorithm. Both have action_repeat: it goes to the algorithm, since
-    a pool that repeats actions would only show less of its worlds."""
+    """Splits options into those of the task and those of the algorithm. If both have an option, such as preset, the value decides:
+    it goes to the one that has this word. action_repeat goes to the algorithm, since a pool that repeats actions would only show
+    less of its worlds."""
     tables = (_discovery.task(task).options, _discovery.algo(algo).options)
     known, of_algo = ({folded(key) for key in table} for table in tables)
     kinds = {key: option.kind for table in tables for key, option in table.items()}
@@ -114,18 +116,29 @@ def split_options(task: str, algo: str, options: Options) -> tuple[list[tuple[st
     def plain(key: str, value: Given) -> Value:
         return shown(key, value, kinds) if isinstance(value, (list, tuple, np.ndarray)) else value  # type: ignore[return-value]
 
-    def is_of_task(key: str) -> bool:
-        if folded(key) == "action_repeat" and folded(key) in of_algo:
-            return False
-        return folded(key) in known or folded(key.split(".", 1)[0] + ".FIELD") in known
+    def has(i: int, key: str) -> bool:
+        return folded(key) in (known, of_algo)[i] or i == 0 and folded(key.split(".", 1)[0] + ".FIELD") in known
+
+    def takes(i: int, key: str) -> bool:
+        option = next((option for name, option in tables[i].items() if folded(name) == folded(key)), None)
+        if option is None or option.kind != OptionKind.TEXT or not option.choices:
+            return True
+        return folded(str(options[key])) in {folded(word) for word in option.choices.split("|")}
+
+    def is_of(i: int, key: str) -> bool:
+        if not (has(0, key) and has(1, key)):
+            return has(i, key)
+        if folded(key) == "action_repeat":
+            return i == 1
+        return takes(i, key) or not takes(1 - i, key)
 
     for key in options:
-        if not is_of_task(key) and folded(key) not in of_algo:
+        if not has(0, key) and not has(1, key):
             others = [name for name, info in _discovery.algos().items() if folded(key) in {folded(other) for other in info.options}]
             raise NotFoundError(f"option {key}: neither task {task} nor algorithm {algo} has it" +
                                 (f"; algorithm {others[0]} has" if others else nearest(key, sorted(known | of_algo))))
-    return ([(key, plain(key, value)) for key, value in options.items() if is_of_task(key)],
-            [(key, plain(key, value)) for key, value in options.items() if folded(key) in of_algo])
+    return ([(key, plain(key, value)) for key, value in options.items() if is_of(0, key)],
+            [(key, plain(key, value)) for key, value in options.items() if is_of(1, key)])
 
 
 def learns_magnitudes(agent: Agent) -> bool:

@@ -45,15 +45,6 @@ std::string entries_text(int32_t first, int32_t count) {
   return count == 1 ? std::to_string(first) : format("%d to %d", first, first + count - 1);
 }
 
-std::vector<std::string> words_of(const std::string& text, const std::string& between) {
-  std::vector<std::string> out;
-  for (size_t at = 0, next = 0; at <= text.size(); at = next + between.size()) {
-    next = std::min(text.find(between, at), text.size());
-    out.push_back(text.substr(at, next - at));
-  }
-  return out;
-}
-
 std::string range_text(double low, double high) {
   return std::isnan(low) || std::isnan(high) ? "-" : number_text(low) + " to " + number_text(high);
 }

@@ -159,6 +159,28 @@ std::string algo_hint(const std::string& key) {
   return "";
 }
 
+// Whether `value` may be the option's: one of its words, where it has words.
+bool takes(const std::vector<rdm_option_spec>& table, const std::string& key, const std::string& value) {
+  for (const rdm_option_spec& o : table) {
+    if (!same_name(o.key, key) || o.kind != RDM_KIND_TEXT || !o.choices) continue;
+    const std::vector<std::string> words = words_of(o.choices, "|");
+    return std::any_of(words.begin(), words.end(), [&](const auto& word) { return same_name(word, value); });
+  }
+  return true;
+}
+
+// The owner, of a task and an algorithm that both have option `key`: who has the word `value`.
+struct Owner {
+  bool task, algo;
+};
+Owner owner_of(const std::vector<rdm_option_spec>& task, const std::vector<rdm_option_spec>& algo,
+               const std::string& key, const std::string& value) {
+  // how often an agent decides is the agent's: a pool that repeats would only show less of its worlds
+  if (same_name(key, "action_repeat")) return {false, true};
+  const Owner owner{takes(task, key, value), takes(algo, key, value)};
+  return owner.task || owner.algo ? owner : Owner{true, true};  // neither: each names its words
+}
+
 }  // namespace
 
 void apply_sets(const std::vector<std::string>& sets, PoolSettings& pool, AgentSettings* agent) {
@@ -168,10 +190,11 @@ void apply_sets(const std::vector<std::string>& sets, PoolSettings& pool, AgentS
     const auto pair = split_pair(text, "--set");
     if (printable(text) != text)
       throw Usage("--set " + text + ": it has control characters, or is not UTF-8");
-    const bool of_algo = has_option(algo_table, pair.first);
-    // how often an agent decides is the agent's: a pool that repeats would only show less of its worlds
-    const bool of_task =
-        has_option(task_table, pair.first) && !(of_algo && same_name(pair.first, "action_repeat"));
+    bool of_algo = has_option(algo_table, pair.first), of_task = has_option(task_table, pair.first);
+    if (of_algo && of_task) {
+      const Owner owner = owner_of(task_table, algo_table, pair.first, pair.second);
+      of_task = owner.task, of_algo = owner.algo;
+    }
     if (of_task) pool.options.push_back(pair);
     if (of_algo) agent->options.push_back(pair);
     if (of_task || of_algo) continue;

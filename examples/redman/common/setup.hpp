@@ -61,8 +61,9 @@ CLI::Option* add_pool_flags(CLI::App& command, PoolSettings& pool, const char* t
 void add_set_flag(CLI::App& command, std::vector<std::string>& sets);
 void add_cost_limit_flag(CLI::App& command, std::vector<std::string>& limits);
 
-// Gives each "key=value" to the tables that know the key: the task's, and, when `agent` is not null, the
-// algorithm's. Usage with the nearest known key when no table does.
+// Gives each "key=value" to the table that knows the key: the task's, or, when `agent` is not null, the
+// algorithm's. Of a key that both know, such as preset, the value decides: the one that has this word. Usage with
+// the nearest known key when no table has it.
 void apply_sets(const std::vector<std::string>& sets, PoolSettings& pool, AgentSettings* agent);
 
 // Says so where more worlds were asked for than there are episodes, of which each is played in one.

@@ -98,6 +98,15 @@ std::string html_text(const std::string& text) {
   return out;
 }
 
+std::vector<std::string> words_of(const std::string& text, const std::string& between) {
+  std::vector<std::string> out;
+  for (size_t at = 0, next = 0; at <= text.size(); at = next + between.size()) {
+    next = std::min(text.find(between, at), text.size());
+    out.push_back(text.substr(at, next - at));
+  }
+  return out;
+}
+
 std::string short_count(double value) {
   const double size = std::abs(value);
   if (size >= 1e6) return format("%.3gM", value / 1e6);

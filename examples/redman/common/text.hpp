@@ -24,6 +24,9 @@ std::string html_text(const std::string& text);
 // The cells of a line with commas between them, at most `most` and one more.
 std::vector<std::string> cells_of(const std::string& line, size_t most);
 
+// The words of a text with `between` between them: "a|b" has two.
+std::vector<std::string> words_of(const std::string& text, const std::string& between);
+
 // "1.2k", "3.5M": a count for progress lines and axes.
 std::string short_count(double value);
 
