@@ -131,11 +131,13 @@ void copy_group_memories(const PolicyView& v, const PolicyTensor& t, float* out)
   }
 }
 
-// The first layer of a network of a latent, with a column for each entry of the row, then those of the history, or of z.
+// The first layer of a network of a latent, with a column for each entry of the row, then those of the history, or of z
+// and the features of points.
 void copy_first_layer(const PolicyView& v, const PolicyTensor& t, float* out) {
   const auto rows = static_cast<size_t>(t.rows), cols = static_cast<size_t>(t.cols),
              seen = static_cast<size_t>(t.seen), dim = static_cast<size_t>(v.obs_dim());
-  const size_t behind = v.latent.own == t.reads ? static_cast<size_t>(v.latent.mlp.out) : 0;
+  const size_t behind =
+      v.latent.own == t.reads ? static_cast<size_t>(v.latent.mlp.out + v.eyes.features()) : 0;
   std::fill_n(out, rows * cols, 0.0f);
   for (size_t r = 0; r < rows; ++r) {
     const float* from = t.data + r * (seen + behind);
@@ -234,10 +236,13 @@ bool latent_tensor_at(const PolicyView& v, int32_t i, PolicyTensor* out) {
 }
 
 // The tensors of a policy with a memory.
+int32_t memory_tensors(const PolicyView& v) {
+  return v.history > 1 ? 1 : v.gru.units ? 4 : 0;
+}
 bool memory_tensor_at(const PolicyView& v, int32_t i, PolicyTensor* out) {
   const GruShape& g = v.gru;
+  if (i >= memory_tensors(v)) return false;
   if (v.history > 1) {
-    if (i > 0) return false;
     *out = {"history.columns", nullptr, v.history_width, 1};
     out->history = true;
     return true;
@@ -248,7 +253,6 @@ bool memory_tensor_at(const PolicyView& v, int32_t i, PolicyTensor* out) {
                               {"memory.input.bias", at + g.input_bias_offset(), 3 * g.units, 1},
                               {"memory.state.weight", at + g.state_offset(), 3 * g.units, g.units},
                               {"memory.state.bias", at + g.state_bias_offset(), 3 * g.units, 1}};
-  if (g.units == 0 || i >= static_cast<int32_t>(std::size(all))) return false;
   *out = all[i];
   if (v.num_groups == 0) return true;
   const int32_t units = v.state_dim(), in = v.actor.num_hidden ? v.num_groups * g.in : v.obs_dim();
@@ -288,7 +292,7 @@ bool tensor_at(const PolicyView& v, int32_t i, PolicyTensor* out) {
       else
         *out = {kWeights[l], at, head.out, head.in};
     } else if (i % 2 == 0 && l == 0 && v.latent) {
-      *out = {kWeights[l], v.params, s.layer_out(l), v.obs_dim() + v.latent.mlp.out};
+      *out = {kWeights[l], v.params, s.layer_out(l), v.obs_dim() + v.latent.mlp.out + v.eyes.features()};
       out->reads = v.latent.own, out->seen = v.latent.num_own;
     } else if (i % 2)
       *out = {kBiases[l], v.params + s.bias_offset(l), s.layer_out(l), 1};
@@ -322,7 +326,8 @@ bool tensor_at(const PolicyView& v, int32_t i, PolicyTensor* out) {
     const int32_t latent = v.latent ? 2 * v.latent.mlp.num_layers() : 0;
     if (at < latent) return latent_tensor_at(v, at, out);
     at -= latent;
-    return v.state_dim() ? memory_tensor_at(v, at, out) : eyes_tensor_at(v, at, out);
+    if (memory_tensor_at(v, at, out)) return true;
+    return eyes_tensor_at(v, at - memory_tensors(v), out);
   }
   return true;
 }
@@ -417,12 +422,25 @@ void need_rows(int32_t rows) {
 }
 // Acts with a policy that does not read points.
 void need_blind(const Policy& policy) {
-  if (policy.view().eyes.points) fail(Code::kState, "policy: it reads points; call rdm_policy_act_points");
+  if (policy.view().eyes.points)
+    fail(Code::kState, "policy: it reads points; call %s",
+         policy.view().state_dim() ? "rdm_policy_act_points_state" : "rdm_policy_act_points");
 }
 
 void need_no_state(const Policy& policy, const char* call) {
   if (policy.view().state_dim())
-    fail(Code::kState, "policy: it has a memory, so %s cannot run it; call rdm_policy_act_state", call);
+    fail(Code::kState, "policy: it has a memory, so %s cannot run it; call %s", call,
+         policy.view().eyes.points ? "rdm_policy_act_points_state" : "rdm_policy_act_state");
+}
+
+// Clouds of rows, as policies that read them need them.
+PointRows need_clouds(const Policy& policy, const rdm_points* points, int32_t rows) {
+  const PointNetShape& eyes = policy.view().eyes;
+  if (!eyes.points) fail(Code::kState, "policy: it does not read points");
+  const PointRows clouds = read_points(points, eyes);
+  need_finite(clouds.metres, rows, 3 * eyes.points, "points");
+  need_channels(eyes, clouds, static_cast<size_t>(rows));
+  return clouds;
 }
 
 // run(scratch) writes the rows that are not NULL, action and mean, which are looked at then.
@@ -439,6 +457,16 @@ void act(const rdm_policy* p, const float* obs, int32_t rows, const float* noise
   p->changes.end_reading(begun, "policy");
   for (const float* x : {action, mean})
     if (x) need_finite(x, rows, v.action_dim(), "action: the network overflows on these observations");
+}
+// With what it remembers, if it has a memory.
+void act_on(const rdm_policy* p, const float* obs, const PointRows& clouds, float* state, int32_t rows,
+            const float* noise, float* action, void* scratch, size_t scratch_bytes) {
+  const int32_t dim = p->policy->view().state_dim();
+  if (dim) need(state, "state");
+  act(p, obs, rows, noise, action, nullptr, scratch, scratch_bytes, [&](void* memory) {
+    if (dim) need_finite(state, rows, dim, "state");
+    p->policy->act(obs, rows, noise, action, memory, clouds, state);
+  });
 }
 }  // namespace
 
@@ -464,12 +492,7 @@ rdm_result rdm_policy_act_state(const rdm_policy* p, const float* obs, float* st
     need_rows(rows);
     need_blind(*p->policy);
     need(action, "action");
-    const int32_t dim = p->policy->view().state_dim();
-    if (dim) need(state, "state");
-    act(p, obs, rows, noise, action, nullptr, scratch, scratch_bytes, [&](void* memory) {
-      if (dim) need_finite(state, rows, dim, "state");
-      p->policy->act(obs, rows, noise, action, memory, {}, state);
-    });
+    act_on(p, obs, {}, state, rows, noise, action, scratch, scratch_bytes);
   });
 }
 
@@ -513,14 +536,24 @@ rdm_result rdm_policy_act_points(const rdm_policy* p, const float* obs, const rd
     need_handle(p);
     need(obs, "obs");
     need_rows(rows);
-    const PointNetShape& eyes = p->policy->view().eyes;
-    if (!eyes.points) fail(Code::kState, "policy: it does not read points");
-    const PointRows clouds = read_points(points, eyes);
-    need_finite(clouds.metres, rows, 3 * eyes.points, "points");
-    need_channels(eyes, clouds, static_cast<size_t>(rows));
+    const PointRows clouds = need_clouds(*p->policy, points, rows);
+    need_no_state(*p->policy, "rdm_policy_act_points");
     need(action, "action");
     act(p, obs, rows, noise, action, nullptr, scratch, scratch_bytes,
         [&](void* memory) { p->policy->act(obs, rows, noise, action, memory, clouds); });
+  });
+}
+
+rdm_result rdm_policy_act_points_state(const rdm_policy* p, const float* obs, const rdm_points* points,
+                                       float* state, int32_t rows, const float* noise, float* action,
+                                       void* scratch, size_t scratch_bytes) {
+  return call([&] {
+    need_handle(p);
+    need(obs, "obs");
+    need_rows(rows);
+    const PointRows clouds = need_clouds(*p->policy, points, rows);
+    need(action, "action");
+    act_on(p, obs, clouds, state, rows, noise, action, scratch, scratch_bytes);
   });
 }
 

@@ -313,7 +313,7 @@ void Agent::take_statistics(const LearnRows& rows) {
 }
 
 void Agent::end_learning() {
-  if (nets_.average && *nets_.averaged == 0) restart_average(nets_);
+  begin_average(nets_);
   sampler_ = 0;
 }
 

@@ -138,7 +138,8 @@ ActorScratch carve_actor_scratch(Arena& arena, const ResolvedAgentConfig& resolv
     s.z = arena.make<float>(n * numbers);
     s.dz = arena.make<float>(n * numbers);
     if (resolved.adapts()) s.teacher = encoder(resolved.teacher), s.taught = arena.make<float>(n * numbers);
-    return s;
+    if (resolved.sees())
+      s.behind = arena.make<float>(n * (numbers + static_cast<size_t>(resolved.eyes.features())));
   }
   if (resolved.gru.units)
     s.memory = carve_recurrent_scratch(arena, {resolved.actor, resolved.gru}, rows, resolved.trusts());
@@ -153,45 +154,70 @@ ActorScratch carve_actor_scratch(Arena& arena, const ResolvedAgentConfig& resolv
 void Networks::forward_actor_with(const float* weights, const float* x, const PointRows& clouds, int32_t rows,
                                   const ActorScratch& scratch, float* y) const {
   if (num_groups) return forward_groups(weights, x, rows, scratch, y);
-  if (latent) return forward_latent(weights, x, rows, scratch, y);
-  if (!eyes.points) return forward_with(weights, kActor, x, rows, scratch, y);
-  const size_t in = feature_step(), own = static_cast<size_t>(actor_entries()), width = in - own;
-  for (size_t i = 0; i < static_cast<size_t>(rows); ++i) {
+  if (!latent && !eyes.points) return forward_with(weights, kActor, x, rows, scratch, y);
+  const size_t in = feature_step(), own = static_cast<size_t>(actor_entries());
+  for (size_t i = 0; !latent && i < static_cast<size_t>(rows); ++i) {
     const float* row = x + i * static_cast<size_t>(obs_dim);
     float* to = scratch.picked + i * in;
     if (columns[kActor])
       pick_columns(row, 1, obs_dim, columns[kActor], actor_entries(), to);
     else
       std::copy_n(row, own, to);
-    if (clouds.features) std::copy_n(clouds.features + clouds.row(i) * width, width, to + own);
+  }
+  if (latent) see_latent(weights, x, rows, scratch);
+  if (eyes.points) see_clouds(weights, clouds, rows, scratch);
+  mlp_forward(shape[kActor], weights, scratch.picked, rows, scratch, y);
+  if (state_std()) bound_std(rows, y);
+}
+
+void Networks::see_latent(const float* weights, const float* x, int32_t rows,
+                          const ActorScratch& scratch) const {
+  pick_columns(x, rows, obs_dim, latent.columns, latent.mlp.in, scratch.latent.picked);
+  mlp_forward(latent.mlp, weights + latent_offset(), scratch.latent.picked, rows, scratch.latent, scratch.z);
+  put_latent(latent, x, obs_dim, scratch.z, rows, scratch.picked, feature_step());
+}
+
+// Features behind what the actor sees beside them, which come with the clouds or are computed.
+void Networks::see_clouds(const float* weights, const PointRows& clouds, int32_t rows,
+                          const ActorScratch& scratch) const {
+  const size_t in = feature_step(), own = static_cast<size_t>(actor_entries()), width = in - own;
+  for (size_t i = 0; i < static_cast<size_t>(rows); ++i) {
+    if (clouds.features)
+      std::copy_n(clouds.features + clouds.row(i) * width, width, scratch.picked + i * in + own);
     if (clouds.winner) std::copy_n(clouds.winner + clouds.row(i) * width, width, scratch.winner + i * width);
   }
   if (!clouds.features)
     pointnet_forward(eyes, weights + eyes_offset(), clouds, rows, scratch.eyes, scratch.picked + own, in,
                      scratch.winner);
-  mlp_forward(shape[kActor], weights, scratch.picked, rows, scratch, y);
-  if (state_std()) bound_std(rows, y);
 }
 
-void Networks::forward_latent(const float* weights, const float* x, int32_t rows, const ActorScratch& scratch,
-                              float* y) const {
-  pick_columns(x, rows, obs_dim, latent.columns, latent.mlp.in, scratch.latent.picked);
-  mlp_forward(latent.mlp, weights + latent_offset(), scratch.latent.picked, rows, scratch.latent, scratch.z);
-  put_latent(latent, x, obs_dim, scratch.z, rows, scratch.picked);
-  mlp_forward(shape[kActor], weights, scratch.picked, rows, scratch, y);
-  if (state_std()) bound_std(rows, y);
+float* Networks::made(const ActorScratch& scratch) const {
+  return latent && eyes.points ? scratch.behind : latent ? scratch.dz : scratch.dfeatures;
 }
 
-// Of a student nothing but its encoder.
-void Networks::backward_latent(int32_t rows, const ActorScratch& scratch, const float* dy,
-                               float* grad) const {
-  float* const to = grad + net_offset(kActor);
-  if (adapts()) std::fill_n(to, latent_offset(), 0.0f);
-  mlp_backward(shape[kActor], net(kActor), scratch.picked, rows, scratch, dy, adapts() ? nullptr : to,
-               latent.num_own, scratch.dz);
-  mlp_backward(latent.mlp, net(kActor) + latent_offset(), scratch.latent.picked, rows, scratch.latent,
-               scratch.dz, to + latent_offset());
-  if (adapts()) std::fill_n(to + teacher_offset(), teacher.num_params(), 0.0f);
+// Derivatives of the latent and of features, which stand beside each other in a row, each in an array of its own.
+void Networks::part_made(int32_t rows, const ActorScratch& scratch) const {
+  if (!latent || !eyes.points) return;
+  const auto numbers = static_cast<size_t>(latent.mlp.out), width = static_cast<size_t>(eyes.features());
+  const float* from = scratch.behind;
+  for (size_t i = 0; i < static_cast<size_t>(rows); ++i, from += numbers + width) {
+    std::copy_n(from, numbers, scratch.dz + i * numbers);
+    std::copy_n(from + numbers, width, scratch.dfeatures + i * width);
+  }
+}
+
+// The other way; eyes that stand still have no derivatives.
+void Networks::join_made(int32_t rows, const ActorScratch& scratch) const {
+  if (!latent || !eyes.points) return;
+  const auto numbers = static_cast<size_t>(latent.mlp.out), width = static_cast<size_t>(eyes.features());
+  float* to = scratch.behind;
+  for (size_t i = 0; i < static_cast<size_t>(rows); ++i, to += numbers + width) {
+    std::copy_n(scratch.dz + i * numbers, numbers, to);
+    if (frozen)
+      std::fill_n(to + numbers, width, 0.0f);
+    else
+      std::copy_n(scratch.dfeatures + i * width, width, to + numbers);
+  }
 }
 
 double Networks::regress_latent(const float* x, int32_t rows, float scale, const ActorScratch& scratch,
@@ -331,17 +357,22 @@ void Networks::backward_actor(const float* x, const PointRows& clouds, int32_t r
     mlp_backward(g.shape, net(kActor) + g.offset, g.columns ? own.picked : x, rows, own, scratch.part, to);
   }
   if (num_groups) return;
-  if (latent) return backward_latent(rows, scratch, dy, grad);
-  if (!eyes.points) return backward(kActor, x, rows, scratch, dy, grad);
-  float* const net_grad = grad + net_offset(kActor);
-  float* const eyes_grad = net_grad + eyes_offset();
-  mlp_backward(shape[kActor], net(kActor), scratch.picked, rows, scratch, dy, net_grad, actor_entries(),
-               frozen ? nullptr : scratch.dfeatures);
+  if (!latent && !eyes.points) return backward(kActor, x, rows, scratch, dy, grad);
+  // Of a student nothing but its encoder learns.
+  float* const to = grad + net_offset(kActor);
+  if (adapts()) std::fill_n(to, latent_offset(), 0.0f);
+  mlp_backward(shape[kActor], net(kActor), scratch.picked, rows, scratch, dy, adapts() ? nullptr : to,
+               first_made(), !latent && frozen ? nullptr : made(scratch));
+  part_made(rows, scratch);
   if (frozen)
-    std::fill_n(eyes_grad, eyes.num_params(), 0.0f);
-  else
+    std::fill_n(to + eyes_offset(), eyes.num_params(), 0.0f);
+  else if (eyes.points)
     pointnet_backward(eyes, eyes_net(), clouds, rows, scratch.eyes, features(scratch), feature_step(),
-                      scratch.winner, scratch.dfeatures, eyes_grad);
+                      scratch.winner, scratch.dfeatures, to + eyes_offset());
+  if (latent)
+    mlp_backward(latent.mlp, net(kActor) + latent_offset(), scratch.latent.picked, rows, scratch.latent,
+                 scratch.dz, to + latent_offset());
+  if (adapts()) std::fill_n(to + teacher_offset(), teacher.num_params(), 0.0f);
 }
 
 void Networks::tangent_actor(const float* direction, const float* x, const PointRows& clouds, int32_t rows,
@@ -357,18 +388,16 @@ void Networks::tangent_actor(const float* direction, const float* x, const Point
     spread_outputs(g, scratch.part, rows, static_cast<size_t>(shape[kActor].out), dy);
   }
   if (num_groups) return;
-  if (latent) {
+  if (!latent && !eyes.points) return tangent(kActor, direction, x, rows, scratch, dy);
+  if (latent)
     mlp_tangent(latent.mlp, net(kActor) + latent_offset(), direction + latent_offset(), scratch.latent.picked,
                 rows, scratch.latent, scratch.dz);
-    return mlp_tangent(shape[kActor], net(kActor), direction, scratch.picked, rows, scratch, dy,
-                       latent.num_own, scratch.dz);
-  }
-  if (!eyes.points) return tangent(kActor, direction, x, rows, scratch, dy);
-  if (!frozen)
+  if (eyes.points && !frozen)
     pointnet_tangent(eyes, eyes_net(), direction + eyes_offset(), clouds, rows, scratch.eyes,
                      features(scratch), feature_step(), scratch.winner, scratch.dfeatures);
-  mlp_tangent(shape[kActor], net(kActor), direction, scratch.picked, rows, scratch, dy, actor_entries(),
-              frozen ? nullptr : scratch.dfeatures);
+  join_made(rows, scratch);
+  mlp_tangent(shape[kActor], net(kActor), direction, scratch.picked, rows, scratch, dy, first_made(),
+              !latent && frozen ? nullptr : made(scratch));
 }
 
 void init_networks(const Networks& n, const ResolvedAgentConfig& resolved) {
@@ -438,6 +467,10 @@ void restart_average(const Networks& n) {
   std::copy_n(n.params, n.block[Networks::kActor].size, n.average);
 }
 
+void begin_average(const Networks& n) {
+  if (n.average && *n.averaged == 0) restart_average(n);
+}
+
 void restart_steps(Networks& n) {
   n.block[Networks::kActor].adam.t = 0;
   std::fill_n(n.group_steps, n.num_groups, int64_t{0});
@@ -494,10 +527,11 @@ int32_t Networks::num_tensors() const {
 void Networks::visit(StateIo& io) {
   // Bound on what the actor's network sees, its features too.
   const auto input_of = [&](const StateView<float>& p, size_t at) {
-    if (latent)
-      return std::max(input_bound, mlp_bound(latent.mlp, From{p, at + latent_offset()}, input_bound));
-    if (!eyes.points) return input_bound;
-    return std::max(input_bound, mlp_bound(eyes.mlp, From{p, at + eyes_offset()}, largest_point(eyes)));
+    double most = input_bound;
+    if (latent) most = std::max(most, mlp_bound(latent.mlp, From{p, at + latent_offset()}, input_bound));
+    if (eyes.points)
+      most = std::max(most, mlp_bound(eyes.mlp, From{p, at + eyes_offset()}, largest_point(eyes)));
+    return most;
   };
   io.section("NETS");
   const StateView<float> p = io.numbers(params, size, -kMaxOutput, kMaxOutput);

@@ -10,9 +10,9 @@
 // With option memory a GRU stands before the actor's last layer, or that of each group: its state comes from whoever
 // runs it, those of groups one behind the other. With option history the rows are stacked ones (rollout/memory.hpp).
 //
-// With option latent the actor's network reads its own entries and a latent, which an encoder makes of others; its
-// parameters stand behind the eyes'. Those of a student have the teacher's encoder behind them, which makes what it
-// learns; then nothing but the student's encoder learns.
+// With option latent the actor's network reads its own entries and a latent, which an encoder makes of others, then the
+// features of its eyes, if it has any; the encoder's parameters stand behind the eyes'. Those of a student have the
+// teacher's encoder behind them, which makes what it learns; then nothing but the student's encoder learns.
 //
 // Critics of an algorithm whose groups have their own stand likewise in the block of their kind.
 //
@@ -45,6 +45,7 @@ struct ActorScratch : MlpScratch {
   MlpScratch latent, teacher;                // of the encoders of a latent, what they read picked
   float *z = nullptr, *dz = nullptr,
         *taught = nullptr;  // [rows][latent] given, its derivative, the teacher's
+  float* behind = nullptr;  // [rows][latent + features] derivatives of both, of an actor that has both
 };
 // Steps of rows that an actor with a GRU runs over; zeros as h0 and no clears begin and keep its memory.
 struct MemorySteps {
@@ -121,7 +122,7 @@ struct Networks {
   int32_t first_action() const { return focus < 0 ? 0 : group[focus].first; }
   int32_t last_action() const { return focus < 0 ? action_dim : group[focus].first + group[focus].count; }
   float* eyes_net() const { return net(kActor) + eyes_offset(); }
-  // Entries of the row that the actor sees, before its features.
+  // What the actor sees before its features: entries of the row, the latent.
   int32_t actor_entries() const { return shape[kActor].in - eyes.features(); }
   int32_t row_entries() const {  // without its history
     return latent ? latent.entries : actor_entries() - history_inputs;
@@ -191,9 +192,15 @@ struct Networks {
   }
   void forward_actor_with(const float* weights, const float* x, const PointRows& clouds, int32_t rows,
                           const ActorScratch& scratch, float* y) const;
-  void forward_latent(const float* weights, const float* x, int32_t rows, const ActorScratch& scratch,
-                      float* y) const;
-  void backward_latent(int32_t rows, const ActorScratch& scratch, const float* dy, float* grad) const;
+  void see_latent(const float* weights, const float* x, int32_t rows, const ActorScratch& scratch) const;
+  void see_clouds(const float* weights, const PointRows& clouds, int32_t rows,
+                  const ActorScratch& scratch) const;
+  // The actor's inputs from this one on come of encoders that learn: where the inputs' derivatives go, [rows][in -
+  // first_made()], and, back and forth, the encoders' own behind it.
+  int32_t first_made() const { return latent ? latent.num_own : actor_entries(); }
+  float* made(const ActorScratch& scratch) const;
+  void part_made(int32_t rows, const ActorScratch& scratch) const;
+  void join_made(int32_t rows, const ActorScratch& scratch) const;
   void forward_critics(int32_t i, const float* x, int32_t rows, const ActorScratch& scratch, float* y) const;
   void backward_critics(int32_t i, const float* x, int32_t rows, const ActorScratch& scratch, const float* dy,
                         float* grad) const;
@@ -216,6 +223,8 @@ void clamp_log_std(const Networks& n);
 void average_actor(const Networks& n);
 // It begins again with the actor as it is.
 void restart_average(const Networks& n);
+// The same where no epoch is in it yet.
+void begin_average(const Networks& n);
 // Adam's counts of the actor begin again.
 void restart_steps(Networks& n);
 // The actor as it is, and back to it: around an update, and around a line search.

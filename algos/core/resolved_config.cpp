@@ -161,7 +161,7 @@ void resolve_eyes(ResolvedAgentConfig& resolved) {
   parse_origin(o.encoder_origin, eyes.origin);
   check_pointnet_shape(eyes);
   resolved.eyes = eyes;
-  resolved.frozen = o.encoder_frozen;
+  resolved.frozen = o.encoder_frozen || o.latent_student;
 }
 
 // Those of `own` that are in `seen`; empty lists are all entries, and so is the result where it is all.
@@ -279,7 +279,6 @@ void resolve_latent_fields(ResolvedAgentConfig& resolved) {
   if (!resolved.groups.empty())
     fail(Code::kUnsupported,
          "latent: it cannot be combined with several groups yet; groups=all has one network");
-  if (*o.encoder) fail(Code::kUnsupported, "latent: it cannot be combined with option encoder yet");
   if (*o.memory)
     fail(Code::kUnsupported,
          "latent: it cannot be combined with option memory yet; a student has option history");
@@ -357,9 +356,9 @@ void resolve_memory(ResolvedAgentConfig& resolved, int32_t units) {
          "history: it cannot be combined with several groups yet; groups=all has one network, and option "
          "memory "
          "works with groups");
-  if (resolved.sees())
-    fail(Code::kUnsupported, "%s: it cannot be combined with option encoder yet",
-         units ? "memory" : "history");
+  if (units && resolved.sees())
+    fail(Code::kUnsupported,
+         "memory: it cannot be combined with option encoder yet; option history works with an encoder");
 }
 
 void resolve_networks(ResolvedAgentConfig& resolved) {

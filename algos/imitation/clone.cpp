@@ -33,8 +33,7 @@ void check(const ResolvedAgentConfig& resolved, const DemoRows& demo, const Clon
 int32_t split(const DemoRows& demo, double share, Stream& stream, Vector<int32_t>& order) {
   const int32_t wanted = std::min(demo.rows - 1, static_cast<int32_t>(share * demo.rows));
   const int32_t items = demo.items();
-  int64_t episodes = 1;
-  for (int32_t i = 0; demo.episode && i < demo.rows; ++i) episodes = std::max(episodes, demo.episode[i] + 1);
+  const int64_t episodes = demo.episodes();
   Vector<uint8_t> held(order.size(), 0);
   int32_t count = 0;  // rows that are held back
   if (episodes < 2) {

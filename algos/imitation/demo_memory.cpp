@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "algos/core/by_episode.hpp"
 #include "algos/imitation/regression.hpp"
 
 namespace rdm {
@@ -9,9 +10,7 @@ namespace rdm {
 void DemoMemory::open(const ResolvedAgentConfig& resolved, const DemoRows& demo) {
   if (!resolved.remembers() || demo.rows == 0) return;
   const auto rows = static_cast<size_t>(demo.rows);
-  int64_t episodes = 1;
-  for (int32_t i = 0; demo.episode && i < demo.rows; ++i) episodes = std::max(episodes, demo.episode[i] + 1);
-  Vector<int32_t> last(static_cast<size_t>(episodes), -1);
+  Vector<int32_t> last(static_cast<size_t>(demo.episodes()), -1);
   before_.assign(rows, -1);
   for (int32_t i = 0; i < demo.rows; ++i) {
     int32_t& previous = last[static_cast<size_t>(demo.episode_of(i))];
@@ -27,10 +26,7 @@ void DemoMemory::open(const ResolvedAgentConfig& resolved, const DemoRows& demo)
 void DemoMemory::cut(const DemoRows& demo, int32_t length) {
   row_.resize(before_.size());
   for (int32_t i = 0; i < demo.rows; ++i) row_[static_cast<size_t>(i)] = i;
-  std::sort(row_.begin(), row_.end(), [&](int32_t a, int32_t b) {
-    const int64_t one = demo.episode_of(a), other = demo.episode_of(b);
-    return one < other || (one == other && a < b);
-  });
+  std::sort(row_.begin(), row_.end(), by_episode([&](int32_t i) { return demo.episode_of(i); }));
   for (int32_t at = 0; at < demo.rows; ++at) {
     const bool begins = before_[static_cast<size_t>(row_[static_cast<size_t>(at)])] < 0;
     if (begins) episode_.push_back(paths());

@@ -28,6 +28,11 @@ struct DemoRows {
   DemoMemory* memory = nullptr;  // of an agent with a GRU
 
   int64_t episode_of(int32_t row) const { return episode ? episode[row] : 0; }
+  int64_t episodes() const {
+    int64_t count = 1;
+    for (int32_t i = 0; episode && i < rows; ++i) count = std::max(count, episode[i] + 1);
+    return count;
+  }
   int32_t items() const { return memory ? memory->paths() : rows; }
   int32_t rows_of(int32_t item) const { return memory ? memory->rows(item) : 1; }
   int32_t first_row(int32_t item) const { return memory ? memory->row(item, 0) : item; }

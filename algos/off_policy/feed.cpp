@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "algos/core/by_episode.hpp"
 #include "base/elementary.hpp"
 #include "base/error.hpp"
 
@@ -17,13 +18,10 @@ bool set(const uint8_t* flags, int32_t i) {
 
 }  // namespace
 
-// Rows of worlds that stepped together stand in turn in a recording. Nothing is done where the order is right already.
+// Nothing is done where the order is right already.
 void Feed::put_in_order(const LearnRows& rows) {
   const auto n = static_cast<size_t>(rows.rows);
-  const auto before = [&](int32_t a, int32_t b) {
-    const int64_t one = episode_of(rows, a), other = episode_of(rows, b);
-    return one != other ? one < other : a < b;
-  };
+  const auto before = by_episode([&](int32_t i) { return episode_of(rows, i); });
   if (order_.size() == n && std::is_sorted(order_.begin(), order_.end(), before)) return;
   order_.resize(n);
   for (size_t i = 0; i < n; ++i) order_[i] = static_cast<int32_t>(i);

@@ -58,8 +58,7 @@ void ReplayAgent::learn_steps(int64_t steps) {
     for (stage_ = Stage::kDraw; left_ > 0; advance(true))
       if (stage_ == Stage::kDraw) check_cancel();
     if (steps_ % kStepsOfWeights != 0) continue;
-    if (nets().average && *nets().averaged == 0)
-      restart_average(nets());  // the first is the actor to the bit
+    begin_average(nets());  // the first is the actor to the bit
     average_actor(nets());
   }
 }

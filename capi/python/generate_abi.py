@@ -370,7 +370,7 @@ WORDS = {
     "rdm_pool_step": "Pool.step", "rdm_pool_field_at": "Pool.fields", "rdm_pool_shape_at": "Pool.shapes",
     "rdm_task_at and the like": "Task.number", "rdm_task_field_at": "Task.fields", "rdm_task_option_at": "Task.options",
     "rdm_task_camera_at": "Task.cameras", "rdm_task_default_at": "Task.defaults", "rdm_algo_option_at": "Algo.options",
-    "rdm_policy_act_points": "Policy.act", "rdm_policy_act_state": "Policy.act",
+    "rdm_policy_act_points": "Policy.act", "rdm_policy_act_points_state": "Policy.act", "rdm_policy_act_state": "Policy.act",
     "rdm_policy_novelty": "Policy.novelty", "rdm_policy_field_at": "Policy.fields",
     "rdm_agent_pretrain": "Agent.pretrain", "rdm_agent_clone": "Agent.clone", "rdm_agent_learn": "Agent.learn_from", "rdm_agent_rollout": "Agent.rollout",
     "rdm_agent_set_option": "Agent.set", "rdm_planner_act": "Planner.act", "rdm_import_check": "load_robot(check=True)",

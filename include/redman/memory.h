@@ -18,8 +18,8 @@ extern "C" {
  *   rdm_policy_act_state(policy, obs, state, rows, NULL, action, scratch, bytes);
  */
 /* As rdm_policy_act, of obs [rows][obs_dim], noise [rows][action_dim] or NULL, action
- * [rows][action_dim] and scratch [scratch_bytes], for any policy that reads no points: state
- * [rows][state_dim] is read, and becomes that after the decision; NULL only where state_dim is 0.
+ * [rows][action_dim] and scratch [scratch_bytes], for any policy that reads no points (for those
+ * that do, rdm_policy_act_points_state): state [rows][state_dim] is read, and becomes that after the decision; NULL only where state_dim is 0.
  * ARGUMENT for a state that is not finite. On errors the state stays as it is, except where the
  * network overflows. */
 RDM_API rdm_result rdm_policy_act_state(const rdm_policy *p, const float *obs, float *state,

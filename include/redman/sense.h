@@ -143,6 +143,12 @@ RDM_API rdm_result rdm_agent_act_points(rdm_agent *a, const float *obs, const rd
 RDM_API rdm_result rdm_policy_act_points(const rdm_policy *p, const float *obs,
                                          const rdm_points *points, int32_t rows, const float *noise,
                                          float *action, void *scratch, size_t scratch_bytes);
+/* The same for a policy that reads points and has a memory (option history beside encoder): state
+ * [rows][state_dim] as of rdm_policy_act_state (memory.h). */
+RDM_API rdm_result rdm_policy_act_points_state(const rdm_policy *p, const float *obs,
+                                               const rdm_points *points, float *state,
+                                               int32_t rows, const float *noise, float *action,
+                                               void *scratch, size_t scratch_bytes);
 typedef struct rdm_pretrain_config { /* how rdm_agent_pretrain learns */
   uint32_t struct_size;       /* bytes, set by rdm_pretrain_config_init */
   int32_t num_labels;         /* kinds of points to tell apart, 2..64, required */

@@ -67,6 +67,13 @@ inline void act(const Policy& policy, const float* obs, const rdm_points& seen, 
   Bytes scratch(policy.scratch_bytes(rows));
   act(policy, obs, seen, rows, noise, action, scratch.data(), scratch.size());
 }
+// Of a policy with a memory: state [rows][state_dim] becomes that after the decision.
+inline void act(const Policy& policy, const float* obs, const rdm_points& seen, float* state,
+                int32_t rows, const float* noise, float* action) {
+  Bytes scratch(policy.scratch_bytes(rows));
+  check(rdm_policy_act_points_state(policy.get(), obs, &seen, state, rows, noise, action,
+                                    scratch.data(), scratch.size()));
+}
 
 // label [rows][seen.num_points], less than num_labels; the rest of `how` as
 // rdm_pretrain_config_init has it.

@@ -2,6 +2,8 @@
 //
 //   z = mu(o_l),   a = pi(o_p, z)      o_l, o_p: entries of the row, or of the row with its history behind it
 //
+// pi of a policy that sees points has their features behind z.
+//
 // mu is a perceptron whose last layer is linear; pi's network has z behind its own entries. Of a teacher o_l are fields
 // that a robot cannot measure, of a student its last decisions, and pi is the same.
 #pragma once
@@ -22,11 +24,11 @@ struct LatentShape {
   size_t num_params() const { return mlp.out ? mlp.num_params() : 0; }
 };
 
-// What pi sees [rows][own + z], of rows x [rows][width] and their z [rows][mlp.out].
+// What pi sees, own and z at the begin of seen [rows][step], of rows x [rows][width] and their z [rows][mlp.out].
 inline void put_latent(const LatentShape& l, const float* x, int32_t width, const float* z, int32_t rows,
-                       float* seen) {
+                       float* seen, size_t step) {
   const auto own = static_cast<size_t>(l.num_own), out = static_cast<size_t>(l.mlp.out);
-  for (int32_t i = 0; i < rows; ++i, x += width, z += out, seen += own + out) {
+  for (int32_t i = 0; i < rows; ++i, x += width, z += out, seen += step) {
     pick_columns(x, 1, width, l.own, l.num_own, seen);
     std::copy_n(z, out, seen + own);
   }

@@ -140,7 +140,7 @@ void see_latent(const PolicyView& v, int32_t rows, const ActScratch& s) {
   const int32_t width = v.entries() + v.history_inputs();
   pick_columns(s.stacked, rows, width, l.columns, l.mlp.in, s.shown);
   mlp_forward(l.mlp, v.latent_params, s.shown, rows, s.latent, s.z);
-  put_latent(l, s.stacked, width, s.z, rows, s.obs);
+  put_latent(l, s.stacked, width, s.z, rows, s.obs, sz(v.actor.in));
 }
 
 // Group i of a policy: its entries of y, and of the states [rows][state_dim()].
@@ -190,8 +190,8 @@ void act_view(const PolicyView& v, const float* obs, const PointRows& clouds, in
       if (v.history > 1) remember(v, x, n, state + sz(at) * sz(v.state_dim()), seen, step);
       if (v.latent) see_latent(v, n, s);
       if (v.eyes.points)
-        pointnet_forward(v.eyes, v.eyes_params, clouds.from(v.eyes, sz(at)), n, s.eyes, s.obs + v.entries(),
-                         sz(v.actor.in), nullptr);
+        pointnet_forward(v.eyes, v.eyes_params, clouds.from(v.eyes, sz(at)), n, s.eyes,
+                         s.obs + v.actor.in - v.eyes.features(), sz(v.actor.in), nullptr);
       x = s.obs;
     }
     for (int32_t i = 0; i < v.num_groups; ++i)
@@ -274,6 +274,12 @@ void write_memory(Writer& out, const PolicyView& v) {
   out.end_section();
 }
 
+// Of a policy with more than eyes: whether points have colours is a number of their section.
+constexpr uint32_t kEyesAndMore = 11;
+bool sees_and_more(const PolicyView& v) {
+  return v.eyes.points && (v.latent || v.state_dim() > 0);
+}
+
 void write_eyes(Writer& out, const PolicyView& v) {
   const PointNetShape& s = v.eyes;
   out.begin_section("EYES");
@@ -285,23 +291,26 @@ void write_eyes(Writer& out, const PolicyView& v) {
   out.value(static_cast<int32_t>(s.mlp.activation));
   out.value(s.mlp.num_hidden);
   for (int32_t l = 0; l < kMaxHidden; ++l) out.value(l < s.mlp.num_hidden ? s.mlp.hidden[l] : int32_t{0});
+  if (sees_and_more(v)) out.value(int32_t{s.color});
   out.end_section();
 }
 
-void read_eyes(Reader& in, PolicyView& v, bool color) {
+void read_eyes(Reader& in, PolicyView& v, uint32_t version) {
   in.need_section("EYES");
   PointNetShape& s = v.eyes;
   s.points = in.value<int32_t>();
   s.classes = in.value<int32_t>();
-  s.color = color;
-  s.mlp.in = 3 + std::clamp(s.classes, 0, kMaxClasses) + (color ? 3 : 0);
   s.mlp.out = in.value<int32_t>();
   for (float& x : s.origin) x = in.value<float>();
   s.range = in.value<float>();
   s.mlp.activation = static_cast<Activation>(in.value<int32_t>());
   s.mlp.num_hidden = in.value<int32_t>();
   for (int32_t& h : s.mlp.hidden) h = in.value<int32_t>();
+  const int32_t color = version == kEyesAndMore ? in.value<int32_t>() : version == 5;
   in.expect_end();
+  if (color != 0 && color != 1) bad("whether it sees colours is unknown");
+  s.color = color == 1;
+  s.mlp.in = 3 + std::clamp(s.classes, 0, kMaxClasses) + (s.color ? 3 : 0);
   try {
     check_pointnet_shape(s);
   } catch (const Error& e) {
@@ -542,10 +551,11 @@ void read_memory(Reader& in, PolicyParts& parts) {
   v.history = in.value<int32_t>();
   v.history_width = in.value<int32_t>();
   if (units > 0 && v.latent) bad("it has a latent and a memory of units");
+  if (units > 0 && v.eyes.points) bad("it sees points and has a memory of units");
   if (units < 0 || units > kMaxUnits) bad("the number of units of its memory is out of range");
   if (v.history < 1 || v.history > kMaxHistory) bad("the length of its history is out of range");
   if ((v.history == 1) != (v.history_width == 0) || v.history_width < 0 ||
-      int64_t{v.history - 1} * v.history_width >= (v.latent ? kMaxInputs : v.actor.in) ||
+      int64_t{v.history - 1} * v.history_width >= (v.latent ? kMaxInputs : v.actor.in - v.eyes.features()) ||
       v.history_width > v.entries())
     bad("the entries of its history are out of range");
   if (units == 0 && v.history == 1) bad("its memory is empty");
@@ -584,7 +594,8 @@ void read_latent(Reader& in, PolicyParts& parts) {
   }
   for (int32_t k = l.mlp.num_hidden; k < kMaxHidden; ++k)
     if (l.mlp.hidden[k] != 0) bad("a layer that does not exist has a width");
-  if (l.num_own + l.mlp.out != v.actor.in) bad("the network's inputs are not its entries and its latent");
+  if (l.num_own + l.mlp.out + v.eyes.features() != v.actor.in)
+    bad("the network's inputs are not its entries and its latent");
 }
 
 // Once the history is known, which both may read.
@@ -607,10 +618,12 @@ void read_parts(const void* bytes, size_t size, PolicyParts& parts) {
   read_meta(in, v);
   read_arch(in, v.actor);
   if (version > 1) read_head(in, v);
-  if (version == 4 || version == 5) read_eyes(in, v, version == 5);
-  if (version == 10) read_latent(in, parts);
-  if (version == 7 || version == 9 || (version == 10 && in.find_section("MEMO"))) read_memory(in, parts);
-  if (version == 10) check_latent(parts);
+  const bool more = version == kEyesAndMore;
+  if (version == 4 || version == 5 || more) read_eyes(in, v, version);
+  if (version == 10 || (more && in.find_section("LATN"))) read_latent(in, parts);
+  if (version == 7 || version == 9 || (version >= 10 && in.find_section("MEMO"))) read_memory(in, parts);
+  if (v.latent) check_latent(parts);
+  if (more && !sees_and_more(v)) bad("it has neither a history nor a latent beside its points");
   if (version == 8) read_squash(in, v);
   v.row_dim = v.entries();
   if (version == 3 || (version > 3 && in.find_section("COLS"))) read_columns(in, parts);
@@ -777,7 +790,8 @@ void write_policy(Writer& out, const PolicyView& view) {
     act_example(view, obs.data(), cloud, action.data(), align_scratch(memory.data()), state.data());
   }
   const bool remembers = view.state_dim() > 0;
-  out.begin_file(kPolicyMagic, view.latent                    ? 10
+  out.begin_file(kPolicyMagic, sees_and_more(view)            ? kEyesAndMore
+                               : view.latent                  ? 10
                                : view.squash != Squash::kNone ? 8
                                : remembers && view.num_groups ? 9
                                : remembers                    ? 7

@@ -3,7 +3,8 @@
 // whose deviation depends on the state, version 3 for one that sees a part of the observation alone, version
 // 4 for one that sees points, version 5 for one that sees their colours, version 6 for one in groups, version 7 for one
 // that has a memory, version 8 for one whose actions are squashed, version 9 for one in groups that have memories,
-// version 10 for one with a latent: versions before do not know these.
+// version 10 for one with a latent, version 11 for one that sees points and has a history or a latent: versions before
+// do not know these.
 // Sections FLDS, the names of fields, GENR, the generation, and SEEN, what is usual in a row, came later and
 // are in files of each version: a reader finds sections by their tags, and passes over others.
 #pragma once
@@ -22,7 +23,7 @@
 namespace rdm {
 
 inline constexpr char kPolicyMagic[8] = {'R', 'D', 'M', 'P', 'O', 'L', 'I', 'C'};
-inline constexpr uint32_t kPolicyVersion = 10;
+inline constexpr uint32_t kPolicyVersion = 11;
 inline constexpr int32_t kMaxHistory = 1024;
 
 // Everything that a policy file holds, as views of memory that somebody else owns.
@@ -42,7 +43,8 @@ struct PolicyView {
   int32_t history_width = 0;
   PointNetShape eyes;                  // points 0: none; their features are the actor's last inputs
   const float* eyes_params = nullptr;  // [eyes.num_params()]
-  // mu and pi, of which `actor` is pi's: its last inputs are z. Their columns are of the entries with the history.
+  // mu and pi, of which `actor` is pi's: z stands behind its own inputs. Their columns are of the entries with the
+  // history.
   LatentShape latent;                    // none without numbers
   const float* latent_params = nullptr;  // [latent.num_params()]
   const int32_t* columns = nullptr;      // [entries()] entries of the row, ascending; null: all of them

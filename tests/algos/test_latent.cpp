@@ -410,7 +410,6 @@ TEST(Latent, WhatDoesNotFitIsRefusedByName) {
   refused(plain().with("latent_from", "history"), "latent_from: history needs option history");
   refused(plain().with("history", "3"), "latent_from=history makes a student");
   refused(plain().with("memory", "gru:4"), "latent: it cannot be combined with option memory");
-  refused(plain().with("encoder", "8"), "latent: it cannot be combined with option encoder");
   refused(setup_of(true).with("latent", "0"), "latent_from: it needs option latent");
   refused(setup_of(true).with("history_fields", "a,dynamics.b"),
           "history_fields: it names fields of the latent");

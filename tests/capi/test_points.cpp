@@ -245,6 +245,47 @@ TEST(Points, WhatIsWrongIsSaidInOneLine) {
   EXPECT_STREQ(rdm_last_error(), "policy: it reads points; call rdm_policy_act_points");
 }
 
+// The agent keeps the states of its worlds; of a policy alone the caller does.
+TEST(Points, WithAHistoryThePolicyTakesItsState) {
+  redman::Agent a = agent_of("encoder=8,12\nencoder_points=32\nencoder_classes=2\nhorizon=4\nhistory=3");
+  Host h;
+  h.epoch(a);
+  const redman::Policy p(a.policy());
+  ASSERT_EQ(p.info().state_dim, 2 * kObs);
+  std::vector<float> state(static_cast<size_t>(kEnvs * 2 * kObs)), action(h.action.size());
+  for (int32_t decision = 0; decision < 6; ++decision) {
+    h.draw();
+    redman::act(a, h.obs.data(), h.seen(), RDM_ACT_MEAN, h.action.data());
+    redman::act(p, h.obs.data(), h.seen(), state.data(), kEnvs, nullptr, action.data());
+    for (size_t i = 0; i < action.size(); ++i) EXPECT_EQ(action[i], std::clamp(h.action[i], -1.0f, 1.0f));
+  }
+  // the newest decision of a state is the row that was seen, as the network sees it
+  EXPECT_NE(state[0], 0);
+  std::vector<unsigned char> scratch(p.scratch_bytes(kEnvs));
+  const rdm_points seen = h.seen();
+  const auto act = [&](float* remembered) {
+    const rdm_result r = rdm_policy_act_points_state(p.get(), h.obs.data(), &seen, remembered, kEnvs, nullptr,
+                                                     action.data(), scratch.data(), scratch.size());
+    return r == RDM_OK ? std::string() : std::string(rdm_last_error());
+  };
+  EXPECT_EQ(act(nullptr), "state is NULL");
+  const auto kept = state;
+  state[3] = NAN;
+  EXPECT_EQ(act(state.data()), "state: row 0 is not finite");
+  state = kept;
+  EXPECT_EQ(rdm_policy_act_points(p.get(), h.obs.data(), &seen, kEnvs, nullptr, action.data(), scratch.data(),
+                                  scratch.size()),
+            RDM_ERROR_STATE);
+  EXPECT_STREQ(rdm_last_error(),
+               "policy: it has a memory, so rdm_policy_act_points cannot run it; call "
+               "rdm_policy_act_points_state");
+  EXPECT_EQ(rdm_policy_act_state(p.get(), h.obs.data(), state.data(), kEnvs, nullptr, action.data(),
+                                 scratch.data(), scratch.size()),
+            RDM_ERROR_STATE);
+  EXPECT_STREQ(rdm_last_error(), "policy: it reads points; call rdm_policy_act_points_state");
+  EXPECT_EQ(state, kept);
+}
+
 TEST(Points, MemoryIsToldExactly) {
   for (const char* settings : {kEyes, "encoder=64,128\nencoder_frozen=on\nencoder_points=2048\nhorizon=4"}) {
     rdm_agent_config c = redman::agent_config(kObs, kActions, kEnvs);

@@ -94,6 +94,20 @@ class PartsOfARow(unittest.TestCase):
         one = policy.act(obs[0], points=seen["points"][0], point_class=seen["point_class"][:1])
         np.testing.assert_array_equal(one, np.clip(mean[0], -1, 1))
 
+    def test_eyes_beside_a_history(self):
+        draw = np.random.default_rng(1)
+        options = {"encoder": "8,12", "encoder_points": 16, "horizon": 4, "history": 3}
+        with redman.Agent(obs_dim=3, action_dim=2, num_envs=4, options=options) as agent:
+            policy = agent.policy()
+            state = policy.start(4)
+            for _ in range(4):
+                obs, points = draw.normal(size=(4, 3)).astype(np.float32), draw.normal(size=(4, 16, 3))
+                mean = agent.act(obs, "mean", points=points)
+                action, state = policy.act(obs, points=points, state=state)
+                np.testing.assert_array_equal(action, np.clip(mean, -1, 1))
+            with self.assertRaisesRegex(redman.StateError, r"policy.act\(obs, points=points, state=state\)"):
+                policy.act(obs, state)
+
     def test_an_actor_that_sees_a_part(self):
         with redman.Pool("grasp", 4) as pool:
             pool.reset()

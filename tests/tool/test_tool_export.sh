@@ -51,6 +51,13 @@ policy kinds --set encoder=8,8,9 --set encoder_classes=4 --set encoder_activatio
 policy tints --set encoder=8,9 --set encoder_classes=5 --set encoder_color=on --set goal_points=8 --set hidden=16 $cloud
 # shellcheck disable=SC2086
 policy flat --set encoder=12 --set encoder_activation=tanh --set hidden=16 --set normalize_obs=false $cloud
+# eyes beside a history, and beside a latent of a teacher and of a student
+# shellcheck disable=SC2086
+policy eyes_past --set encoder=16,24 --set actor_obs=vision --set history=3 --set 'history_fields=*.joint_position' --set hidden=16 $cloud
+# shellcheck disable=SC2086
+policy eyes_latent $drawn --set encoder=8,12 --set encoder_classes=4 $cloud
+# shellcheck disable=SC2086
+policy eyes_student $drawn --set encoder=8,12 --set encoder_color=on --set latent_from=history --set history=3 --set 'history_fields=*.joint_position' $cloud
 
 command -v python3 > /dev/null && python3 - "$dir" << 'EOF' || failed=1
 import json, math, struct, sys

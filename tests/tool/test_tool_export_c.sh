@@ -61,7 +61,7 @@ check() {
     fi
     status "$file" 0 "$file"
     # any number that is changed is noticed, and a policy that takes what is no number
-    for table in weight_0 $(case $name in bare*_gru) echo weight_input bias_state ;; bare_student) echo weight_latent_0 bias_latent_0 ;; *student | latent) echo bias_1 weight_latent_1 ;; *) echo bias_1 ;; esac) $(case $eyes in *EYES*) echo weight_eye_0 origin ;; esac) ${shield:+low high}; do
+    for table in weight_0 $(case $name in bare*_gru) echo weight_input bias_state ;; bare_student) echo weight_latent_0 bias_latent_0 ;; *student | *latent) echo bias_1 weight_latent_1 ;; *) echo bias_1 ;; esac) $(case $eyes in *EYES*) echo weight_eye_0 origin ;; esac) ${shield:+low high}; do
       awk -v table="_$table[" '{ if (on) { sub(/^  -?/, "&1"); on = 0 } if (index($0, table) && /^static const/) on = 1; print }' \
         "$file" > changed.c
       cmp -s "$file" changed.c && say "$file: nothing was changed in $table"
@@ -147,12 +147,23 @@ check bare_student $drawn --set latent_from=history --set history=2 --set hidden
 eyes=
 # shellcheck disable=SC2086
 check latent $drawn --set hidden=16,17 --set latent_hidden=9
-for name in gru past student; do
+# eyes beside a history, and beside a latent of a teacher and of a student
+eyes='-DEYES -DSTATE'
+# shellcheck disable=SC2086
+check eyes_past --set encoder=16,24 --set actor_obs=vision --set history=3 --set 'history_fields=*.joint_position' --set hidden=16,16 $cloud
+eyes='-DEYES -DKINDS -DCOLORS -DSTATE'
+# shellcheck disable=SC2086
+check eyes_student $drawn --seed 3 --set encoder=8,12 --set encoder_classes=4 --set encoder_color=on --set latent_from=history --set history=3 \
+  --set 'history_fields=*.joint_position' --set hidden=16 --set latent_hidden=9,8 $cloud
+eyes='-DEYES -DKINDS'
+# shellcheck disable=SC2086
+check eyes_latent $drawn --seed 3 --set encoder=8,12 --set encoder_classes=4 --set hidden=16,17 --set latent_hidden=9 $cloud
+for name in gru past student eyes_past eyes_student; do
   sed 's/state\[i\] = next\[i\]/state[i] = state[i]/' $name.c > changed.c
   status changed.c 1 "$name without its memory"
 done
 eyes=
-[ $checked -eq 23 ] || say "$checked policies"
+[ $checked -eq 26 ] || say "$checked policies"
 
 # several policies in one program, by one file or by several
 printf '#include "%s"\n#include "%s"\n#include "%s"\n#include "%s"\nint main(void) { return 0; }\n' tanh.c elu_8.c elu_8.c kinds.c > both.c

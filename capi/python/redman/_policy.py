@@ -215,17 +215,22 @@ class Policy(Hinted):
             drawn = None if noise is None else given(noise, rows_of["noise"], lengths, "noise")
             size, scratch = self._scratch(rows)
             noise_at = None if drawn is None else drawn.ctypes.data
+            decision = (rows, noise_at, action.ctypes.data, scratch, size)
             if remembers:
                 kept = self._state(state, rows)
-                check(lib.rdm_policy_act_state(self._handle.value, seen.ctypes.data, kept.ctypes.data, rows, noise_at,
-                                               action.ctypes.data, scratch, size))
-            elif points is None:
-                check(lib.rdm_policy_act(self._handle.value, seen.ctypes.data, rows, noise_at, action.ctypes.data,
-                                         scratch, size))
+            if points is None:
+                if remembers:
+                    check(lib.rdm_policy_act_state(self._handle.value, seen.ctypes.data, kept.ctypes.data, *decision))
+                else:
+                    check(lib.rdm_policy_act(self._handle.value, seen.ctypes.data, *decision))
             else:
                 cloud, held = clouds(points, point_class, point_color, rows)
-                check(lib.rdm_policy_act_points(self._handle.value, seen.ctypes.data, ctypes.byref(cloud), rows,
-                                                noise_at, action.ctypes.data, scratch, size))
+                if remembers:
+                    check(lib.rdm_policy_act_points_state(self._handle.value, seen.ctypes.data, ctypes.byref(cloud),
+                                                          kept.ctypes.data, *decision))
+                else:
+                    check(lib.rdm_policy_act_points(self._handle.value, seen.ctypes.data, ctypes.byref(cloud),
+                                                    *decision))
                 del held
         done = decided(action if observed.ndim == 2 else action.reshape(-1), self.info.action_repeat)
         if not remembers:

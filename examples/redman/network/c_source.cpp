@@ -193,12 +193,6 @@ std::vector<float> run_layers(const Network& network, const Layers& layers, cons
     for (size_t i = 0; i < x.size(); ++i)
       x[i] = std::clamp((x[i] - shift[i]) * scale[i], -clip->values[0], clip->values[0]);
   }
-  if (const auto count = static_cast<size_t>(network.eyes.points)) {
-    const auto features =
-        run_eyes(network.eyes, layers.eyes, clouds.points.data() + 3 * row * count,
-                 clouds.classes.data() + row * count, clouds.colors.data() + 3 * row * count);
-    x.insert(x.end(), features.begin(), features.end());
-  }
   const Memory& memory = network.memory;
   if (memory.size && row % kProbeEpisode == 0) state.assign(static_cast<size_t>(memory.size), 0);
   std::vector<float> own = x;
@@ -207,6 +201,12 @@ std::vector<float> run_layers(const Network& network, const Layers& layers, cons
     run_all(layers.latent, network.activation, x);
     own.insert(own.end(), x.begin(), x.begin() + network.latent);
     x = own;
+  }
+  if (const auto count = static_cast<size_t>(network.eyes.points)) {
+    const auto features =
+        run_eyes(network.eyes, layers.eyes, clouds.points.data() + 3 * row * count,
+                 clouds.classes.data() + row * count, clouds.colors.data() + 3 * row * count);
+    x.insert(x.end(), features.begin(), features.end());
   }
   if (memory.units)
     run_gru(network, layers, x, state);
@@ -412,18 +412,19 @@ std::string channels_of(const Eyes& e, const std::string& type) {
 
 // What a caller of the file writes.
 struct Call {
-  std::string declaration, call, no_points;
+  std::string function, declaration, call, no_points;
 };
 Call call_of(const Network& network) {
   const Eyes& e = network.eyes;
-  if (network.memory.size)
-    return {"void NAME_act(const float *obs, float *state, float *action)", "NAME_act(obs, state, action)",
-            ""};
-  if (e.points == 0) return {"void NAME_act(const float *obs, float *action)", "NAME_act(obs, action)", ""};
-  const std::string act = "NAME_act_points(obs, points, " + channels_of(e, "");
-  return {"void NAME_act_points(const float *obs, const float *points, " +
-              channels_of(e, "const unsigned char *") + "int count, float *action)",
-          act + "count, action)", act + "0, action)"};
+  const std::string function = e.points ? "NAME_act_points" : "NAME_act",
+                    state = network.memory.size ? "state, " : "",
+                    front = function + "(obs, " + (e.points ? "points, " + channels_of(e, "") : "");
+  const std::string declaration =
+      "void " + function + "(const float *obs, " +
+      (e.points ? "const float *points, " + channels_of(e, "const unsigned char *") + "int count, " : "") +
+      (state.empty() ? "" : "float *state, ") + "float *action)";
+  if (e.points == 0) return {function, declaration, front + state + "action)", ""};
+  return {function, declaration, front + "count, " + state + "action)", front + "0, " + state + "action)"};
 }
 
 bool squashes(const Network& network) {
@@ -451,20 +452,31 @@ std::string activations_text(const Network& network, const Layers& layers) {
   return eyes ? out + activation_text(network.eyes.activation, true) : out;
 }
 
+const char* eye_activate(const Network& network, const Layers& layers) {
+  return own_activation(network, layers) ? "NAME_eye_activate" : "NAME_activate";
+}
+
+// What makes features of a cloud.
 std::string eyes_text(const Network& network, const Layers& layers, bool int8) {
   const Eyes& e = network.eyes;
-  const char* activate = own_activation(network, layers) ? "NAME_eye_activate" : "NAME_activate";
+  if (e.points == 0) return "";
   std::string see = with_rows(kSeeHead, layers.eyes);
   if (e.classes) see += replaced(kSeeClasses, "CLASSES", std::to_string(e.classes));
   if (e.color) see += replaced(kSeeColors, "FIRST", std::to_string(3 + e.classes));
-  see += layer_calls(layers.eyes, int8, "    ", activate) + replaced(kSeeTail, "LAST", last_row(layers.eyes));
+  see += layer_calls(layers.eyes, int8, "    ", eye_activate(network, layers)) +
+         replaced(kSeeTail, "LAST", last_row(layers.eyes));
   see = replaced(see, "STEP", literal(static_cast<double>(0.001f / e.range)));
-  const std::string act =
-      replaced(replaced(with_rows(kActPointsHead, layers.actor), "EYE_ACTIVATE", activate), "DECLARATION",
-               call_of(network).declaration);
-  std::string out = kMillimetres + see + act;
-  out = replaced(out, "CHANNEL_PARAMETERS", channels_of(e, "const unsigned char *"));
-  out = replaced(out, "CHANNEL_ARGUMENTS", channels_of(e, ""));
+  see = replaced(see, "CHANNEL_PARAMETERS", channels_of(e, "const unsigned char *"));
+  return kMillimetres + replaced(see, "FEATURES", std::to_string(e.features));
+}
+
+// The features behind what else the actor reads.
+std::string features_text(const Network& network, const Layers& layers) {
+  const Eyes& e = network.eyes;
+  if (e.points == 0) return "";
+  const size_t behind = layers.actor[0].in - static_cast<size_t>(e.features);
+  const std::string out = replaced(replaced(kPutFeatures, "EYE_ACTIVATE", eye_activate(network, layers)),
+                                   "BEHIND", std::to_string(behind));
   return replaced(out, "FEATURES", std::to_string(e.features));
 }
 
@@ -494,44 +506,44 @@ std::vector<Layer> shared_rows(const Network& network, const Layers& layers) {
   if (network.memory.size) rows[0].in = std::max(rows[0].in, static_cast<size_t>(network.obs_dim));
   return rows;
 }
-std::string latent_rows(const Network& network) {
-  return network.latent ? format(", row[NAME_obs_dim], latent[%d]", network.latent) : "";
+// The rows of a decision beside the two buffers.
+std::string rows_text(const Network& network, const Layers& layers) {
+  std::string out;
+  if (network.eyes.points) out += format(", features[%d]", network.eyes.features);
+  if (network.memory.size) out += ", next[NAME_state_size]";
+  if (network.memory.units) out += replaced(kGates, "COUNT", std::to_string(layers.memory[0].out));
+  if (network.latent) out += format(", row[NAME_obs_dim], latent[%d]", network.latent);
+  return out;
 }
 
-std::string memory_text(const Network& network, const Layers& layers, bool int8) {
-  const Memory& m = network.memory;
-  const char* normalise = network.find("normalizer.clip") ? kNormalise : kTake;
-  std::string out = replaced(with_rows(kActStateHead, shared_rows(network, layers)), "DECLARATION",
-                             call_of(network).declaration);
-  if (!m.units) {
-    out = replaced(out, "GATES", latent_rows(network)) + kRow + normalise +
-          replaced(kHistory, "KEPT", std::to_string(m.columns.size())) + latent_text(network, layers, int8);
-    out += layer_calls(layers.actor, int8, "  ", "NAME_activate");
-    return out + replaced(kActTail, "LAST", last_row(layers.actor)) + kKeepState + "}\n";
-  }
-  out = replaced(out, "GATES", replaced(kGates, "COUNT", std::to_string(layers.memory[0].out)));
-  out += std::string(kRow) + normalise;
+// The hidden layers, a step of the GRU, the last layer.
+std::string gru_text(const Network& network, const Layers& layers, bool int8) {
   const std::vector<Layer> hidden(layers.actor.begin(), layers.actor.end() - 1);
-  out += layer_calls(hidden, int8, "  ", "NAME_activate");
+  std::string out = layer_calls(hidden, int8, "  ", "NAME_activate");
   const char* seen = hidden.size() % 2 ? "back" : "front";
   if (!hidden.empty()) out += format("  NAME_activate(%s, %zu);\n", seen, hidden.back().out);
   out +=
       layer_call(layers.memory[0], int8, seen, "gates") + layer_call(layers.memory[1], int8, "state", "part");
-  out += replaced(replaced(kGru, "UNITS", std::to_string(m.units)), "TWICE", std::to_string(2 * m.units));
-  out += layer_call(layers.actor.back(), int8, "next", last_row(layers.actor));
-  return out + replaced(kActTail, "LAST", last_row(layers.actor)) + kKeepState + "}\n";
+  const int32_t units = network.memory.units;
+  out += replaced(replaced(kGru, "UNITS", std::to_string(units)), "TWICE", std::to_string(2 * units));
+  return out + layer_call(layers.actor.back(), int8, "next", last_row(layers.actor));
 }
 
 std::string act_text(const Network& network, const Layers& layers, bool int8) {
-  if (network.memory.size) return memory_text(network, layers, int8);
-  std::string out = network.eyes.points ? eyes_text(network, layers, int8)
-                                        : replaced(with_rows(kActHead, shared_rows(network, layers)),
-                                                   "LATENT_ROWS", latent_rows(network));
-  out += kRow;
-  out += network.find("normalizer.clip") ? kNormalise : kTake;
-  out += latent_text(network, layers, int8);
-  out += layer_calls(layers.actor, int8, "  ", "NAME_activate");
-  return out + replaced(kActTail, "LAST", last_row(layers.actor)) + "}\n";
+  const Memory& m = network.memory;
+  const Eyes& e = network.eyes;
+  std::string out = with_rows(kActHead, shared_rows(network, layers));
+  out = replaced(replaced(out, "DECLARATION", call_of(network).declaration), "ROWS",
+                 rows_text(network, layers));
+  out = replaced(
+      out, "FAULT",
+      e.points ? "NAME_see(points, " + channels_of(e, "") + "count, features)" : std::string("0.0f"));
+  out =
+      eyes_text(network, layers, int8) + out + kRow + (network.find("normalizer.clip") ? kNormalise : kTake);
+  if (m.size && !m.units) out += replaced(kHistory, "KEPT", std::to_string(m.columns.size()));
+  out += latent_text(network, layers, int8) + features_text(network, layers);
+  out += m.units ? gru_text(network, layers, int8) : layer_calls(layers.actor, int8, "  ", "NAME_activate");
+  return out + replaced(kActTail, "LAST", last_row(layers.actor)) + (m.size ? kKeepState : "") + "}\n";
 }
 
 // The self-test's clouds.
@@ -565,7 +577,7 @@ std::string test_main_text(const Network& network) {
     if (e.classes) refused += replaced(kRefuseClasses, "CLASSES", std::to_string(e.classes));
   }
   if (network.memory.size)
-    cloud = "  static float state[NAME_state_size];\n";  // zeros; the rows are an episode
+    cloud += "  static float state[NAME_state_size];\n";  // zeros; the rows are an episode
   std::string out = replaced(replaced(kTestMain, "CLOUD", cloud), "DRAW", draw);
   out = replaced(out, "REFUSED", refused);
   const Call call = call_of(network);
@@ -584,7 +596,8 @@ std::string head_text(const Network& network, const std::vector<Layer>& layers,
     if (e.classes) sees += kSeesClasses;
     if (e.color) sees += kSeesColors;
   }
-  if (network.memory.size) beside = "state[NAME_state_size] = {0}, ", sees = kRemembers;
+  if (network.memory.size)
+    beside += "state[NAME_state_size] = {0}, ", sees += replaced(kRemembers, "FUNCTION", call.function);
   out = replaced(
       replaced(replaced(out, "BESIDE", beside), "CALL", replaced(call.call, "count", "NAME_num_points")),
       "SEES", sees);
@@ -724,11 +737,11 @@ CSource c_source(const redman::Policy& policy, const Network& network, const std
   const rdm_policy_info& info = policy.info();
   std::string& text = out.text;
   text = head_text(network, layers.actor, fields, bounds, info);
-  text += replaced(replaced(kDeclarations, "DECLARATION", call_of(network).declaration), "EYE_SIZES",
-                   network.memory.size ? format(", NAME_state_size = %d", network.memory.size)
-                   : !eyes.points      ? ""
-                                       : format(",\n       NAME_num_points = %d, NAME_num_point_classes = %d",
-                                                eyes.points, eyes.classes));
+  std::string sizes;
+  if (network.memory.size) sizes += format(", NAME_state_size = %d", network.memory.size);
+  if (eyes.points)
+    sizes += format(",\n       NAME_num_points = %d, NAME_num_point_classes = %d", eyes.points, eyes.classes);
+  text += replaced(replaced(kDeclarations, "DECLARATION", call_of(network).declaration), "EYE_SIZES", sizes);
   text += tables.text();
   if (const auto& kept = network.memory.columns; !kept.empty()) {
     text += format("static const uint16_t NAME_kept[%zu] = {", kept.size());

@@ -48,7 +48,7 @@ inline constexpr const char* kSeesColors =
 inline constexpr const char* kRemembers =
     R"( *
  * state [NAME_state_size]: what it remembers of an episode, the caller's: all zeros where one begins, and from one
- * decision to the next as NAME_act leaves it. Where an action is NaN it stays as it was.
+ * decision to the next as FUNCTION leaves it. Where an action is NaN it stays as it was.
 )";
 
 inline constexpr const char* kDeclarations = R"( */
@@ -188,9 +188,9 @@ static void NAME_layer(const int8_t *weight, const float *scale, const float *bi
 )";
 
 inline constexpr const char* kActHead = R"(
-void NAME_act(const float *obs, float *action) {
-  float front[FRONT], back[BACK]LATENT_ROWS;
-  float fault = 0.0f; /* NaN once something is not finite */
+DECLARATION {
+  float front[FRONT], back[BACK]ROWS;
+  float fault = FAULT; /* NaN once something is not finite */
   int i;
 )";
 
@@ -204,13 +204,6 @@ inline constexpr const char* kPutLatent = R"(  for (i = 0; i < LATENT; ++i) late
 )";
 
 // ---- memory -----------------------------------------------------------------------------------------------
-inline constexpr const char* kActStateHead = R"(
-DECLARATION {
-  float front[FRONT], back[BACK], next[NAME_state_size]GATES;
-  float fault = 0.0f; /* NaN once something is not finite */
-  int i;
-)";
-
 inline constexpr const char* kGates = ", gates[COUNT], part[COUNT]";
 
 // Behind the hidden layers' calls.
@@ -283,13 +276,9 @@ inline constexpr const char* kSeeTail = R"(    for (i = 0; i < FEATURES; ++i)
 }
 )";
 
-inline constexpr const char* kActPointsHead = R"(
-DECLARATION {
-  float front[FRONT], back[BACK], features[FEATURES];
-  float fault = NAME_see(points, CHANNEL_ARGUMENTScount, features); /* NaN once something is not finite */
-  int i;
-  EYE_ACTIVATE(features, FEATURES);
-  for (i = 0; i < FEATURES; ++i) front[NAME_obs_dim + i] = features[i];
+// Behind all else that the actor sees.
+inline constexpr const char* kPutFeatures = R"(  EYE_ACTIVATE(features, FEATURES);
+  for (i = 0; i < FEATURES; ++i) front[BEHIND + i] = features[i];
 )";
 
 inline constexpr const char* kNormalise = R"(    const float z = (obs[i] - NAME_shift[i]) * NAME_scale[i];

@@ -164,10 +164,9 @@ NamedTensor transposed(const NamedTensor& t) {
   return out;
 }
 
-// Features of the cloud, behind the entries of the row.
-void add_eyes(const Network& network, Graph& graph, std::string& row) {
+// Features of the cloud.
+std::string add_eyes(const Network& network, Graph& graph) {
   const Eyes& eyes = network.eyes;
-  if (eyes.points == 0) return;
   const std::string activation = activation_operator(eyes.activation);
   std::string x = add_points(eyes, graph);
   for (int32_t l = 0; l < eyes.num_layers; ++l) {
@@ -179,7 +178,7 @@ void add_eyes(const Network& network, Graph& graph, std::string& row) {
     x = graph.node("Add", {x, graph.constant(bias)}, layer);
     x = graph.node(activation.c_str(), {x}, last ? "features" : layer + ".out");
   }
-  row = graph.node("Concat", {row, x}, "seen", {{"axis", 1}});
+  return x;
 }
 
 NamedTensor half(const NamedTensor& t, bool second) {
@@ -254,7 +253,7 @@ std::string add_history(const Memory& memory, Graph& graph, const std::string& x
                                         "history.rest", {{"axis", 1}});
     graph.node("Concat", {newest, rest}, "next_state", {{"axis", 1}});
   }
-  return graph.node("Concat", {x, "state"}, "seen", {{"axis", 1}});
+  return graph.node("Concat", {x, "state"}, "with_history", {{"axis", 1}});
 }
 
 // The row with its latent behind it, of what the encoder sees.
@@ -278,12 +277,13 @@ std::string onnx_bytes(const Network& network) {
   graph.input("obs", {kBatch, network.obs_dim});
   std::string x = "obs";
   add_normalizer(network, graph, x);
-  add_eyes(network, graph, x);
   const Memory& memory = network.memory;
   if (memory.size) graph.input("state", {kBatch, memory.size});
   const std::string row = x;
   if (memory.size && !memory.units) x = add_history(memory, graph, x);
   if (network.latent) x = add_latent(network, graph, row, x);
+  // Behind all else that the actor sees.
+  if (network.eyes.points) x = graph.node("Concat", {x, add_eyes(network, graph)}, "seen", {{"axis", 1}});
   const NamedTensor *log_std = network.find("actor.log_std"), *bounds = network.find("actor.log_std_bounds");
   const bool squash = network.find("action.squash") != nullptr;
   for (int32_t l = 0; l < network.num_layers; ++l) {

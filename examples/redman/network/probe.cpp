@@ -58,8 +58,16 @@ std::vector<float> mean_actions(const redman::Policy& policy, const std::vector<
   std::vector<float> state;
   for (size_t row = 0; info.state_dim > 0 && row < rows; ++row) {
     if (row % kProbeEpisode == 0) state = redman::start(policy, 1);
-    redman::act(policy, obs.data() + row * static_cast<size_t>(info.obs_dim), state.data(), 1, nullptr,
-                action.data() + row * static_cast<size_t>(info.action_dim), scratch.data(), bytes);
+    const float* const seen = obs.data() + row * static_cast<size_t>(info.obs_dim);
+    float* const to = action.data() + row * static_cast<size_t>(info.action_dim);
+    const size_t first = row * static_cast<size_t>(info.num_points);
+    if (info.num_points == 0)
+      redman::act(policy, seen, state.data(), 1, nullptr, to, scratch.data(), bytes);
+    else
+      redman::act(policy, seen,
+                  redman::points(clouds.points.data() + 3 * first, info.num_points,
+                                 clouds.classes.data() + first, clouds.colors.data() + 3 * first),
+                  state.data(), 1, nullptr, to);
   }
   if (info.state_dim > 0) return action;
   if (info.num_points == 0)

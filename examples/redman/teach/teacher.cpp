@@ -87,12 +87,12 @@ class Lesson {
   void choose(const std::vector<float>& label, const redman::Policy* student, double beta,
               std::vector<float>& held) {
     const size_t n = pool_.num_envs(), width = pool_.action().width();
+    const auto rows = static_cast<int32_t>(n);
     if (student && student->info().num_points > 0)
-      redman::act(*student, pool_.obs().data(), redman::points(redman::sensors(pool_)),
-                  static_cast<int32_t>(n), nullptr, held.data());
+      redman::act(*student, pool_.obs().data(), redman::points(redman::sensors(pool_)), state_of(*student),
+                  rows, nullptr, held.data());
     else if (student)
-      redman::act(*student, pool_.obs().data(), state_of(*student), static_cast<int32_t>(n), nullptr,
-                  held.data());
+      redman::act(*student, pool_.obs().data(), state_of(*student), rows, nullptr, held.data());
     for (size_t i = 0; i < n; ++i) {
       noise_.draw(i);
       const bool taught = !student || noise_.uniform() < beta;

@@ -32,8 +32,12 @@ std::vector<Bytes> seeds() {
   HARD_REQUIRE(seeing.create() == RDM_OK, "%s", rdm_last_error());
   out.push_back(seeing.policy());
   static const rdm_field fields[] = {{"seen", "1", 0, 2}, {"dynamics.drawn", "1", 2, 1}};
-  for (const char* settings : {"memory=gru:3", "history=3", "latent=2\nlatent_hidden=3",
-                               "latent=2\nlatent_from=history\nhistory=3\nhistory_fields=seen"}) {
+  for (const char* settings :
+       {"memory=gru:3", "history=3", "latent=2\nlatent_hidden=3",
+        "latent=2\nlatent_from=history\nhistory=3\nhistory_fields=seen",
+        "history=3\nencoder=4,6\nencoder_points=8\nencoder_color=true",
+        "latent=2\nlatent_hidden=3\nencoder=4,6\nencoder_points=8\nencoder_classes=2",
+        "latent=2\nlatent_from=history\nhistory=3\nhistory_fields=seen\nencoder=4,6\nencoder_points=8"}) {
     AgentOf a;
     a.configure("ppo");
     a.config.settings = settings;
@@ -72,14 +76,15 @@ void one(const unsigned char* data, size_t size) {
   for (size_t i = 0; i < metres.size(); ++i) metres[i] = 0.1f * static_cast<float>(i % 11) - 0.5f;
   std::vector<uint8_t> classes(count(rows, info.num_points));
   std::vector<float> state(count(rows, info.state_dim), 0.5f);
+  float* const remembered = info.state_dim ? state.data() : nullptr;
   const std::vector<uint8_t> colors(metres.size(), 90);
   const rdm_points seen = {sizeof seen, info.num_points, metres.data(), classes.data(), colors.data()};
   for (const float* e : {static_cast<const float*>(nullptr), static_cast<const float*>(noise.data())}) {
     const rdm_result act =
         info.num_points > 0
-            ? rdm_policy_act_points(p, obs.data(), &seen, rows, e, action.data(), scratch, bytes)
-            : rdm_policy_act_state(p, obs.data(), info.state_dim ? state.data() : nullptr, rows, e,
-                                   action.data(), scratch, bytes);
+            ? rdm_policy_act_points_state(p, obs.data(), &seen, remembered, rows, e, action.data(), scratch,
+                                          bytes)
+            : rdm_policy_act_state(p, obs.data(), remembered, rows, e, action.data(), scratch, bytes);
     if (act != RDM_OK) require_refusal(act);
     for (float a : action)
       HARD_REQUIRE(act != RDM_OK || (a >= -1 && a <= 1), "an action is %g", static_cast<double>(a));

@@ -49,6 +49,11 @@ int main(int argc, char** argv) {
 #endif
   fclose(f);
   if (!obs || !want) return 2;
+#ifdef STATE
+#define REMEMBERED state,
+#else
+#define REMEMBERED
+#endif
   for (size_t r = 0; r < rows; ++r) {
 #ifdef EYES
     for (size_t i = 0; i <= count; ++i) {
@@ -62,18 +67,14 @@ int main(int argc, char** argv) {
 #endif
     }
 #if defined COLORS
-    SYMBOL(NAME, _act_points)(obs + r * in, cloud, kinds, tints, (int)count + 1, action);
+    SYMBOL(NAME, _act_points)(obs + r * in, cloud, kinds, tints, (int)count + 1, REMEMBERED action);
 #elif defined KINDS
-    SYMBOL(NAME, _act_points)(obs + r * in, cloud, kinds, (int)count + 1, action);
+    SYMBOL(NAME, _act_points)(obs + r * in, cloud, kinds, (int)count + 1, REMEMBERED action);
 #else
-    SYMBOL(NAME, _act_points)(obs + r * in, cloud, (int)count + 1, action);
+    SYMBOL(NAME, _act_points)(obs + r * in, cloud, (int)count + 1, REMEMBERED action);
 #endif
 #else
-#ifdef STATE
-    SYMBOL(NAME, _act)(obs + r * in, state, action);
-#else
-    SYMBOL(NAME, _act)(obs + r * in, action);
-#endif
+    SYMBOL(NAME, _act)(obs + r * in, REMEMBERED action);
 #endif
     for (size_t j = 0; j < out; ++j) {
       const float gap = fabsf(action[j] - want[r * out + j]);
