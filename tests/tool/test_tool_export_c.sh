@@ -97,7 +97,10 @@ check() {
   done
   compared "$name" 1e-6 -Os
   error=$(stated largest_error "${name}_8.out")
-  compared "${name}_8" "$(awk -v e="$error" 'BEGIN { print e + 1e-5 }')" -Os
+  # half of a probe's rows are played where there are eyes, and with a memory they change the rows after them: other rows
+  # than the error is stated of
+  case $eyes in *EYES*STATE*) most=1.25 ;; *) most=1 ;; esac
+  compared "${name}_8" "$(awk -v e="$error" -v most=$most 'BEGIN { print most * e + 1e-5 }')" -Os
   awk -v e="$error" '{ exit !($1 > 0 && e < 0.1) }' found || say "${name}_8: $(cat found), stated $error"
   grep -q 'differ from' "${name}_8.c" || say "${name}_8: its error is not in it"
   checked=$((checked + 1))
