@@ -6,14 +6,14 @@
 # RESULTS/leaderboard.csv, a row for each run with the hash of its policy, and RESULTS/leaderboard.md, the page, of the rows that
 # there are. Rows of earlier calls stay, and their runs are not made again, also where OUT is gone (AGAIN=1 makes them anew).
 #   PLAN=1 bash examples/leaderboard.sh
-# trains nothing but 40,000 steps of each task, to say how long all of it would take.
+# trains nothing but 40,000 steps of each task, and writes RESULTS/leaderboard_plan.csv: how long all of it would take.
 # Environment: REDMAN (the tool), TASKS, ALGOS (default: all), SEEDS (0..4), JOBS (runs at once, one thread each; 0: each core),
 # HOURS (time after which runs are stopped, to be gone on with later; none), SCALE (1; factor on the numbers of steps).
 set -eu
 # shellcheck source=examples/runs.sh
 . "$(dirname "$0")/runs.sh"
 out=${1:-$root/runs/leaderboard} results=${2:-$root/examples/results}
-csv=$results/leaderboard.csv page=$results/leaderboard.md
+csv=$results/leaderboard.csv page=$results/leaderboard.md plan=$results/leaderboard_plan.csv
 mkdir -p "$out" "$results"
 names() { "$redman" "$1" --json | grep -o "{\"name\":\"[a-z0-9_]*\",\"summary\"" | cut -d'"' -f4; }
 tasks=${TASKS:-$(names tasks)}
@@ -42,9 +42,17 @@ plan() {
       > "$out/plan.json" 2> "$out/plan.log"; } 2>&1) || { echo "$task: no rate: $(tail -n1 "$out/plan.log")" >&2; continue; }
     awk -v task="$task" -v n="$(steps "$task" ppo_lag)" -v seconds="$seconds" -v made="$(value env_steps "$out/plan.json")" \
       'BEGIN { printf "%s,%d,%.1f\n", task, n, seconds / made * 1e6 }'
-  done | tee "$out/plan.csv"
-  awk -F, -v runs="$(($(wc -w <<< "$algos") * (last - first + 1)))" '{ hours += $2 / 1e6 * $3 * runs / 3600; ++count }
-    END { printf "%d tasks x %d runs: %.1f hours of a core, %.1f on 16 cores, %.1f on 2\n", count, runs, hours, hours / 16, hours / 2 }' "$out/plan.csv"
+  done | tee "$plan.part"
+  { echo "task,env_steps,cpu_seconds_per_million"; cat "$plan.part"; } > "$plan"
+  rm "$plan.part"
+  price
+}
+
+# price: what all runs of the plan take, in a sentence.
+price() {
+  awk -F, -v algos="$(wc -w <<< "$algos")" -v seeds="$((last - first + 1))" 'NR > 1 { hours += $2 / 1e6 * $3 * algos * seeds / 3600; ++count }
+    END { printf "All %d tasks with %d algorithms and %d seeds would take %.0f hours of a core: %.1f hours on 16 cores, %.0f on 2.\n",
+      count, algos, seeds, hours, hours / 16, hours / 2 }' "$plan"
 }
 
 # have TASK ALGO SEED STEPS: there is a row of as many steps.
@@ -101,12 +109,16 @@ awk -F, 'FILENAME ~ /scores.csv$/ { if (FNR == 1) { for (i = 1; i <= NF; ++i) at
 {
   echo "# Leaderboard"
   echo
-  echo "\`bash examples/leaderboard.sh\` trains every algorithm on every task with the task's own defaults, five seeds each, and writes this page of"
+  echo "\`bash examples/leaderboard.sh\` trains every algorithm on every task with the task's own defaults, five seeds each, and writes this page from"
   echo "the runs that are done. It can be stopped and called again. [leaderboard.csv](leaderboard.csv) has a row for each run, with the first 16"
-  echo "digits of the SHA-256 of its policy, which the same version makes again on the same vector unit."
+  echo "digits of the SHA-256 of its policy; the same version makes that policy again on the same vector unit."
   echo
   awk -F, 'NR > 1 { ++runs; tasks[$1]; algos[$2]; steps += $4; seconds += $10 } END { for (t in tasks) ++a; for (t in algos) ++b
-    printf "Here are %d runs, of %d tasks and %d algorithms: %.1f million control steps, %.1f hours of one thread.\n", runs, a, b, steps / 1e6, seconds / 3600 }' "$csv"
+    printf "This page has %d runs, of %d tasks and %d algorithms: %.1f million control steps, %.1f hours of one thread.\n", runs, a, b, steps / 1e6, seconds / 3600 }' "$csv"
+  if [ -s "$plan" ]; then
+    price
+    echo "The estimate uses the rate of PPO-Lag on one core of this machine ([leaderboard_plan.csv](leaderboard_plan.csv), \`PLAN=1 bash examples/leaderboard.sh\`)."
+  fi
   echo
   echo "## All tasks together"
   echo

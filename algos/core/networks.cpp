@@ -191,12 +191,11 @@ void Networks::see_clouds(const float* weights, const PointRows& clouds, int32_t
                      scratch.winner);
 }
 
-float* Networks::made(const ActorScratch& scratch) const {
+float* Networks::encoded(const ActorScratch& scratch) const {
   return latent && eyes.points ? scratch.behind : latent ? scratch.dz : scratch.dfeatures;
 }
 
-// Derivatives of the latent and of features, which stand beside each other in a row, each in an array of its own.
-void Networks::part_made(int32_t rows, const ActorScratch& scratch) const {
+void Networks::split_encoded(int32_t rows, const ActorScratch& scratch) const {
   if (!latent || !eyes.points) return;
   const auto numbers = static_cast<size_t>(latent.mlp.out), width = static_cast<size_t>(eyes.features());
   const float* from = scratch.behind;
@@ -206,8 +205,8 @@ void Networks::part_made(int32_t rows, const ActorScratch& scratch) const {
   }
 }
 
-// The other way; eyes that stand still have no derivatives.
-void Networks::join_made(int32_t rows, const ActorScratch& scratch) const {
+// Eyes that stand still have no derivatives.
+void Networks::join_encoded(int32_t rows, const ActorScratch& scratch) const {
   if (!latent || !eyes.points) return;
   const auto numbers = static_cast<size_t>(latent.mlp.out), width = static_cast<size_t>(eyes.features());
   float* to = scratch.behind;
@@ -362,8 +361,8 @@ void Networks::backward_actor(const float* x, const PointRows& clouds, int32_t r
   float* const to = grad + net_offset(kActor);
   if (adapts()) std::fill_n(to, latent_offset(), 0.0f);
   mlp_backward(shape[kActor], net(kActor), scratch.picked, rows, scratch, dy, adapts() ? nullptr : to,
-               first_made(), !latent && frozen ? nullptr : made(scratch));
-  part_made(rows, scratch);
+               first_encoded(), !latent && frozen ? nullptr : encoded(scratch));
+  split_encoded(rows, scratch);
   if (frozen)
     std::fill_n(to + eyes_offset(), eyes.num_params(), 0.0f);
   else if (eyes.points)
@@ -395,9 +394,9 @@ void Networks::tangent_actor(const float* direction, const float* x, const Point
   if (eyes.points && !frozen)
     pointnet_tangent(eyes, eyes_net(), direction + eyes_offset(), clouds, rows, scratch.eyes,
                      features(scratch), feature_step(), scratch.winner, scratch.dfeatures);
-  join_made(rows, scratch);
-  mlp_tangent(shape[kActor], net(kActor), direction, scratch.picked, rows, scratch, dy, first_made(),
-              !latent && frozen ? nullptr : made(scratch));
+  join_encoded(rows, scratch);
+  mlp_tangent(shape[kActor], net(kActor), direction, scratch.picked, rows, scratch, dy, first_encoded(),
+              !latent && frozen ? nullptr : encoded(scratch));
 }
 
 void init_networks(const Networks& n, const ResolvedAgentConfig& resolved) {

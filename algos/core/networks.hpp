@@ -195,12 +195,13 @@ struct Networks {
   void see_latent(const float* weights, const float* x, int32_t rows, const ActorScratch& scratch) const;
   void see_clouds(const float* weights, const PointRows& clouds, int32_t rows,
                   const ActorScratch& scratch) const;
-  // The actor's inputs from this one on come of encoders that learn: where the inputs' derivatives go, [rows][in -
-  // first_made()], and, back and forth, the encoders' own behind it.
-  int32_t first_made() const { return latent ? latent.num_own : actor_entries(); }
-  float* made(const ActorScratch& scratch) const;
-  void part_made(int32_t rows, const ActorScratch& scratch) const;
-  void join_made(int32_t rows, const ActorScratch& scratch) const;
+  // The actor's inputs from first_encoded() on come from its encoders. encoded() is where their derivatives [rows][in -
+  // first_encoded()] stand: those of the latent before those of features. Each encoder has its own in an array of its
+  // own, which split_encoded fills from there; join_encoded goes the other way.
+  int32_t first_encoded() const { return latent ? latent.num_own : actor_entries(); }
+  float* encoded(const ActorScratch& scratch) const;
+  void split_encoded(int32_t rows, const ActorScratch& scratch) const;
+  void join_encoded(int32_t rows, const ActorScratch& scratch) const;
   void forward_critics(int32_t i, const float* x, int32_t rows, const ActorScratch& scratch, float* y) const;
   void backward_critics(int32_t i, const float* x, int32_t rows, const ActorScratch& scratch, const float* dy,
                         float* grad) const;

@@ -308,7 +308,7 @@ void read_eyes(Reader& in, PolicyView& v, uint32_t version) {
   for (int32_t& h : s.mlp.hidden) h = in.value<int32_t>();
   const int32_t color = version == kEyesAndMore ? in.value<int32_t>() : version == 5;
   in.expect_end();
-  if (color != 0 && color != 1) bad("whether it sees colours is unknown");
+  if (color != 0 && color != 1) bad("whether it reads colours is unknown");
   s.color = color == 1;
   s.mlp.in = 3 + std::clamp(s.classes, 0, kMaxClasses) + (s.color ? 3 : 0);
   try {
@@ -551,7 +551,7 @@ void read_memory(Reader& in, PolicyParts& parts) {
   v.history = in.value<int32_t>();
   v.history_width = in.value<int32_t>();
   if (units > 0 && v.latent) bad("it has a latent and a memory of units");
-  if (units > 0 && v.eyes.points) bad("it sees points and has a memory of units");
+  if (units > 0 && v.eyes.points) bad("it reads points and has a memory of units");
   if (units < 0 || units > kMaxUnits) bad("the number of units of its memory is out of range");
   if (v.history < 1 || v.history > kMaxHistory) bad("the length of its history is out of range");
   if ((v.history == 1) != (v.history_width == 0) || v.history_width < 0 ||

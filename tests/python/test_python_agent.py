@@ -86,7 +86,7 @@ class PartsOfARow(unittest.TestCase):
             mean = agent.act(obs, "mean", **seen)
             with self.assertRaisesRegex(redman.StateError, "needs points"):
                 agent.act(obs, "mean")
-            with self.assertRaisesRegex(redman.ArgumentError, r"points: shape \(4, 16, 2\) does not fit"):
+            with self.assertRaisesRegex(redman.ArgumentError, r"points: its shape is \(4, 16, 2\), but it must be \(4, n, 3\)"):
                 agent.act(obs, "mean", points=np.zeros((4, 16, 2)))
             policy = agent.policy()
         self.assertEqual(policy.info.num_points, 16)
@@ -327,7 +327,7 @@ class OfAPool(unittest.TestCase):
                 done = pool.terminated | pool.truncated
                 ended.extend(total[done > 0])
                 total[done > 0] = 0
-                with self.assertRaisesRegex(redman.ArgumentError, r"cost: shape \(8,\) does not fit \(8, 2\), \[num_envs\]\[cost_dim\]"):
+                with self.assertRaisesRegex(redman.ArgumentError, r"cost: its shape is \(8,\), but it must be \(8, 2\), which is \[num_envs\]\[cost_dim\]"):
                     agent.record(pool.reward, fast, pool.terminated, pool.truncated, pool.final_obs)
                 agent.record(pool.reward, np.stack([fast, 0 * fast], 1), pool.terminated, pool.truncated, pool.final_obs)
             epoch = agent.update(pool.obs)

@@ -37,9 +37,9 @@ class Memory(unittest.TestCase):
                 np.testing.assert_array_equal(state[0], alone)
                 with self.assertRaisesRegex(redman.ArgumentError, "policy.start"):
                     policy.act(obs)
-                with self.assertRaisesRegex(redman.ArgumentError, "does not fit"):
+                with self.assertRaisesRegex(redman.ArgumentError, "but it must be"):
                     policy.act(obs, state[:2])
-                with self.assertRaisesRegex(redman.StateError, "rdm_policy_act_state"):
+                with self.assertRaisesRegex(redman.StateError, r"policy.sample\(\) cannot run it; call policy.act\(obs, state\)"):
                     policy.sample(obs)
 
     def test_actors_and_predict_keep_it(self):

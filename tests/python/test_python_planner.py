@@ -71,7 +71,7 @@ class Plans(unittest.TestCase):
         self.assertTrue(np.array_equal(planner.plan, plan))
         planner.reset()
         self.assertFalse(np.array_equal(planner.plan, plan))
-        with self.assertRaisesRegex(redman.ArgumentError, r"plan: shape \(3, 2\) does not fit \(12, 2\)"):
+        with self.assertRaisesRegex(redman.ArgumentError, r"plan: its shape is \(3, 2\), but it must be \(12, 2\)"):
             planner.plan = np.zeros((3, 2))
 
     def test_a_policy_proposes_and_a_critic_values_the_end(self):

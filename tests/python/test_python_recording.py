@@ -100,7 +100,7 @@ class Rows(unittest.TestCase):
                 (lambda: redman.Recording(pool, obs_dim=3), "give either a pool"),
                 (lambda: redman.Recording("r.npz"), r"Recording\.load"),
                 (lambda: recording.append(obs=np.zeros((2, 7))), "obs and action"),
-                (lambda: recording.append(obs=np.zeros((2, 6)), action=np.zeros((2, 2))), r"\(2, 6\) does not fit \(2, 7\)"),
+                (lambda: recording.append(obs=np.zeros((2, 6)), action=np.zeros((2, 2))), r"is \(2, 6\), but it must be \(2, 7\)"),
                 (lambda: recording.append(obs=np.full((2, 7), np.nan), action=np.zeros((2, 2))), "finite"),
                 (lambda: recording.append(np.zeros(3)), "append: give a redman.Recording"),
                 (lambda: recording.filter(max_cost=[1, 2]), "it has 2 limits, but there are 3 costs"),
@@ -171,7 +171,7 @@ class Learning(unittest.TestCase):
         one, column = agent.values(pool.obs[1])
         self.assertEqual(one, value[1])
         self.assertTrue(np.array_equal(column, cost[1]))
-        with self.assertRaisesRegex(redman.ArgumentError, r"obs: shape \(3, 6\) does not fit"):
+        with self.assertRaisesRegex(redman.ArgumentError, r"obs: its shape is \(3, 6\), but"):
             agent.values(np.zeros((3, 6)))
         with self.assertRaises(redman.UnsupportedError):
             redman.Agent(pool, options={"normalize_reward": True}).values(pool.obs)

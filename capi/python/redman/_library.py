@@ -93,7 +93,7 @@ _CALLS = {
     "rdm_agent_set_recording": "agent.recording = recording", "rdm_agent_update_slice": "agent.update_slice()",
     "rdm_agent_discard": "agent.discard()", "rdm_policy_act_points": "policy.act(obs, points=points)",
     "rdm_policy_act_points_state": "policy.act(obs, points=points, state=state)",
-    "rdm_policy_act_state": "policy.act(obs, state)"}
+    "rdm_policy_act_state": "policy.act(obs, state)", "rdm_policy_act": "policy.act()", "rdm_policy_sample": "policy.sample()"}
 
 
 def failure(code: int) -> Error:

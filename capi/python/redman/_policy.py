@@ -24,7 +24,7 @@ from ._names import Hinted, nearest
 from ._options import Options, Value
 from ._own_costs import Own
 from ._pool import Pool
-from ._rows import Array, FloatArray, clouds, given
+from ._rows import Array, FloatArray, clouds, given, wrong_shape
 from ._tensors import Tensors
 
 
@@ -205,7 +205,7 @@ class Policy(Hinted):
         rows_of = _abi.FUNCTIONS["rdm_policy_act"].rows
         observed = np.asarray(obs)
         if observed.ndim not in (1, 2) or observed.shape[-1] != self.info.obs_dim:
-            raise ArgumentError(f"obs: shape {observed.shape} does not fit (rows, {self.info.obs_dim})")
+            raise wrong_shape("obs", observed.shape, f"(rows, {self.info.obs_dim})")
         lengths = {"rows": observed.shape[0] if observed.ndim == 2 else 1, "obs_dim": self.info.obs_dim,
                    "action_dim": self.info.action_dim}
         rows = lengths["rows"]
@@ -245,7 +245,7 @@ class Policy(Hinted):
         """A copy of a state, which the library changes."""
         kept: FloatArray = np.array(state, np.float32, order="C")
         if kept.size != rows * self.info.state_dim or kept.shape[-1] != self.info.state_dim:
-            raise ArgumentError(f"state: shape {kept.shape} does not fit ({rows}, {self.info.state_dim})")
+            raise wrong_shape("state", kept.shape, (rows, self.info.state_dim))
         return kept.reshape(rows, self.info.state_dim)
 
     def sample(self, obs: Any, noise: Any = None) -> tuple[FloatArray, FloatArray]:
@@ -254,7 +254,7 @@ class Policy(Hinted):
         rows_of = _abi.FUNCTIONS["rdm_policy_sample"].rows
         observed = np.atleast_2d(np.asarray(obs))
         if observed.ndim != 2 or observed.shape[1] != self.info.obs_dim:
-            raise ArgumentError(f"obs: shape {np.shape(obs)} does not fit (rows, {self.info.obs_dim})")
+            raise wrong_shape("obs", np.shape(obs), f"(rows, {self.info.obs_dim})")
         lengths = {"rows": len(observed), "obs_dim": self.info.obs_dim, "action_dim": self.info.action_dim}
         shape = (len(observed), self.info.action_dim)
         drawn = given(np.random.standard_normal(shape) if noise is None else noise, rows_of["noise"], lengths, "noise")
@@ -273,7 +273,7 @@ class Policy(Hinted):
         """
         observed = np.asarray(obs)
         if observed.ndim not in (1, 2) or observed.shape[-1] != self.info.obs_dim:
-            raise ArgumentError(f"obs: shape {observed.shape} does not fit (rows, {self.info.obs_dim})")
+            raise wrong_shape("obs", observed.shape, f"(rows, {self.info.obs_dim})")
         rows = observed.shape[0] if observed.ndim == 2 else 1
         seen = given(observed, _abi.FUNCTIONS["rdm_policy_novelty"].rows["obs"],
                      {"rows": rows, "obs_dim": self.info.obs_dim}, "obs")

@@ -63,8 +63,13 @@ def given(value: Any, rows: Rows, lengths: Mapping[str, int], name: str, spread:
                 pass
         if array.shape != shape:
             names = "".join(f"[{length}]" for length in rows.shape)
-            raise ArgumentError(f"{name}: shape {np.shape(value)} does not fit {shape}, {names}")
+            raise wrong_shape(name, np.shape(value), shape, names)
     return np.ascontiguousarray(array)
+
+
+def wrong_shape(name: str, shape: tuple[int, ...], wanted: Any, names: str = "") -> ArgumentError:
+    """The error about an array of another shape; names: what its lengths mean, [num_envs][cost_dim]."""
+    return ArgumentError(f"{name}: its shape is {shape}, but it must be {wanted}" + (f", which is {names}" if names else ""))
 
 
 def _cast(array: Array, dtype: np.dtype[Any], name: str) -> Array:
@@ -106,7 +111,7 @@ def clouds(points: Any, point_class: Any, point_color: Any, rows: int) -> tuple[
     if array.ndim == 2 and rows == 1:
         array = array[None]
     if array.ndim != 3 or array.shape[0] != rows or array.shape[2] != 3:
-        raise ArgumentError(f"points: shape {array.shape} does not fit ({rows}, n, 3)")
+        raise wrong_shape("points", array.shape, f"({rows}, n, 3)")
     table = _abi.ROWS["rdm_points"]
     lengths = {"rows": rows, "num_points": array.shape[1]}
     metres = given(array, table["points"], lengths, "points")

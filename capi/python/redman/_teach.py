@@ -13,7 +13,7 @@ from ._error import ArgumentError, UsageError
 from ._library import assign, check, lib, sized
 from ._policy import Backup, policy_of
 from ._recording import Recording
-from ._rows import DoubleArray, FloatArray, clouds, given
+from ._rows import DoubleArray, FloatArray, clouds, given, wrong_shape
 
 
 class CloneReport(_abi.CloneReport):
@@ -112,7 +112,7 @@ class Taught:
         normalize_reward or normalize_cost, under which critics have no unit."""
         seen = np.asarray(obs)
         if seen.ndim not in (1, 2) or seen.shape[-1] != self.obs_dim:
-            raise ArgumentError(f"obs: shape {seen.shape} does not fit (rows, {self.obs_dim})")
+            raise wrong_shape("obs", seen.shape, f"(rows, {self.obs_dim})")
         rows = 1 if seen.ndim == 1 else len(seen)
         table, lengths = _abi.FUNCTIONS["rdm_agent_get_values"].rows, {"rows": rows, "obs_dim": self.obs_dim}
         value, cost = np.empty(rows, np.float32), np.zeros((rows, _abi.RDM_MAX_COSTS), np.float32)
