@@ -251,7 +251,7 @@ class OwnWorld(unittest.TestCase):
 
     def test_rows_of_another_shape_or_order_are_refused(self):
         agent = redman.Agent(obs_dim=3, action_dim=2, num_envs=4, cost_limits=1, options={"horizon": 2})
-        with self.assertRaisesRegex(redman.ArgumentError, r"obs: shape \(4, 2\)"):
+        with self.assertRaisesRegex(redman.ArgumentError, r"obs: its shape is \(4, 2\)"):
             agent.act(np.zeros((4, 2)))
         with self.assertRaisesRegex(redman.StateError, "act"):
             agent.record(np.zeros(4), np.zeros((4, 1)))
