@@ -59,8 +59,6 @@ void use_policy(const rdm_policy* policy, const rdm_pool* pool, rdm_planner* p, 
   check_policy(policy->policy->view(), spec);
   if (policy->policy->view().eyes.points)
     fail(Code::kUnsupported, "config.policy: it reads points, which simulated plans do not have");
-  if (policy->policy->view().state_dim())
-    fail(Code::kUnsupported, "config.policy: it has a memory, which simulated plans do not have yet");
   p->proposals.open(p->hooks, policy->policy, 1);
   config->policy = &p->proposals;
 }

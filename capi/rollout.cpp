@@ -72,10 +72,13 @@ void hold_action(Pool& pool, DecisionBuffers& d, int32_t repeat, bool raw_costs)
 class AgentForesight final : public Foresight {
  public:
   explicit AgentForesight(const Agent& agent) : agent_(agent) {}
-  void begin(int32_t env, Stream* noise, float* offset) override { agent_.peek(env, noise, offset); }
-  void act(const int32_t* env, const float* obs, int32_t rows, Stream* noise, float* offset,
+  int32_t state_dim() const override { return agent_.state_dim(); }
+  void begin(int32_t env, Stream* noise, float* offset, float* state) override {
+    agent_.peek(env, noise, offset, state);
+  }
+  void act(const int32_t* env, const float* obs, int32_t rows, float* state, Stream* noise, float* offset,
            float* action) override {
-    agent_.foresee(env, obs, rows, noise, offset, action);
+    agent_.foresee(env, obs, rows, state, noise, offset, action);
   }
 
  private:
@@ -99,6 +102,7 @@ class Shielded {
     if (how_ == ShieldLearn::kCost && agent.config().cost_dim < 1)
       fail(Code::kArgument, "shield_learn: cost needs an agent with costs, and cost_dim is 0");
     counts_ = shield->counts();
+    shield->expect(foresight_.state_dim());
     shield->forget_blocks();  // options, tensors or a policy may have been set
   }
 
@@ -251,7 +255,10 @@ rdm_result rdm_agent_set_shield(rdm_agent* a, rdm_shield* shield) {
     if (shield) need_handle(shield);
     if (a->agent->missing() != a->agent->horizon())
       fail(Code::kState, "set_shield: a horizon has begun; set the shield between epochs");
-    if (shield) a->agent->need_no_memory("set_shield");
+    if (shield) {
+      const Use use(shield);  // it takes memory for what the agent remembers
+      shield->shield->expect(a->agent->state_dim());
+    }
     a->shield = shield;
   });
 }

@@ -36,8 +36,6 @@ void add_policy(rdm_shield* s, const rdm_policy* policy) {
   check_policy(policy->policy->view(), s->spec);
   if (policy->policy->view().eyes.points)
     fail(Code::kUnsupported, "policy: it reads points, which copies do not have");
-  if (policy->policy->view().state_dim())
-    fail(Code::kUnsupported, "policy: it has a memory, which copies of a world do not have yet");
   if (held != steps)
     fail(Code::kArgument,
          "policy: it holds an action for %d steps of the pool, but a decision of the shield lasts %d", held,

@@ -76,11 +76,14 @@ class Agent {
   void put(const float* obs, const float* action, const Transition& t);
   // As Collector's of the same names: what is recorded in the place of a sample, and what will be sampled.
   void replace(int32_t env, const float* action) { collector_.replace(env, action); }
-  void peek(int32_t env, Stream* noise, float* offset) const { collector_.peek(env, noise, offset); }
-  void foresee(const int32_t* env, const float* obs, int32_t rows, Stream* noise, float* offset,
-               float* action) const {
-    collector_.foresee(env, obs, rows, noise, offset, action);
+  void peek(int32_t env, Stream* noise, float* offset, float* state) const {
+    collector_.peek(env, noise, offset, state);
   }
+  void foresee(const int32_t* env, const float* obs, int32_t rows, float* state, Stream* noise, float* offset,
+               float* action) const {
+    collector_.foresee(env, obs, rows, state, noise, offset, action);
+  }
+  int32_t state_dim() const { return static_cast<int32_t>(resolved_.state_dim()); }
   // As the critics see any rows, in the units of rewards and costs: value [rows] and cost
   // [rows][num_limited()], of the cost columns limited_column(i). Error(kUnsupported) where those are scaled
   // by what was seen.

@@ -317,14 +317,25 @@ void Collector::replace(int32_t env, const float* action) {
   keep_log_prob(r, at, mean, r.log_std_of(at));
 }
 
-void Collector::foresee(const int32_t* env, const float* obs, int32_t rows, Stream* noise, float* offset,
-                        float* action) const {
+void Collector::foresee(const int32_t* env, const float* obs, int32_t rows, float* state, Stream* noise,
+                        float* offset, float* action) const {
   const size_t width = rollout_.obs_dim, dim = rollout_.action_dim;
   workers_->sweep(rows, share(rows), [&](const Workspace& workspace, int32_t first, int32_t n) {
     const auto at = static_cast<size_t>(first);
     const float* x = normalized(obs + at * width, n, workspace.obs);
     float *out = action + at * dim, *y = nets_->state_std() ? workspace.out : out;
-    nets_->forward_actor(x, {}, n, workspace.actor, y);  // that samples, not its average
+    // The network that samples, not its average.
+    float* const states = memory_ ? state + at * memory_.dim() : nullptr;
+    if (nets_->gru.units) {
+      nets_->forward_memory(x, {1, n, states}, workspace.actor, y);
+      std::copy_n(workspace.actor.memory.h, static_cast<size_t>(n) * memory_.dim(), states);
+    } else if (memory_) {
+      memory_.stack_on(x, states, n, workspace.obs);
+      nets_->forward_actor(workspace.obs, {}, n, workspace.actor, y);
+      memory_.push_rows(states, workspace.obs, n);
+    } else {
+      nets_->forward_actor(x, {}, n, workspace.actor, y);
+    }
     float log_std[kMaxActions], own_std[kMaxActions];
     for (size_t i = 0; i < static_cast<size_t>(n); ++i) {
       float* mean = out + i * dim;

@@ -41,10 +41,15 @@ class Collector {
   void replace(int32_t env, const float* action);
   // What act will do next in worlds that show obs [rows][obs_dim], after a sampled act: of environments
   // env [rows], by copies noise [num_envs] and offset [num_envs][action_dim] of their noise, which go on; null
-  // noise: the means. action [rows][action_dim]. Not for an agent with a point-cloud encoder.
-  void foresee(const int32_t* env, const float* obs, int32_t rows, Stream* noise, float* offset,
+  // noise: the means. action [rows][action_dim]. state [rows][state_dim] is what is remembered of them, and goes on
+  // too. Not for an agent with a point-cloud encoder.
+  void foresee(const int32_t* env, const float* obs, int32_t rows, float* state, Stream* noise, float* offset,
                float* action) const;
-  void peek(int32_t env, Stream* noise, float* offset) const { noise_.peek(env, noise, offset); }
+  // Noise behind the last sampled act, and what was remembered before it: it is an act that waits for its record.
+  void peek(int32_t env, Stream* noise, float* offset, float* state) const {
+    noise_.peek(env, noise, offset);
+    std::copy_n(memory_.state(env, false), memory_.dim(), state);
+  }
   // What the critics say of any rows obs [rows][obs_dim]: value [rows], cost_value [rows][num_limited].
   void value_rows(const float* obs, int32_t rows, float* value, float* cost_value) const;
   // Decisions still missing in this horizon.

@@ -35,12 +35,21 @@ void AgentMemory::begin_decision() {
 }
 
 void AgentMemory::stack(const float* x, int32_t first, int32_t rows, bool by_mean, float* seen) const {
+  stack_on(x, state(first, by_mean), rows, seen);
+}
+
+void AgentMemory::stack_on(const float* x, const float* states, int32_t rows, float* seen) const {
   const size_t dim = rollout_->obs_dim, width = rollout_->seen_dim();
   for (int32_t i = rows; i-- > 0;) {  // from the last row on: they may begin in the same place
     float* const to = seen + static_cast<size_t>(i) * width;
     std::memmove(to, x + static_cast<size_t>(i) * dim, dim * sizeof(float));
-    std::memcpy(to + dim, state(first + i, by_mean), dim_ * sizeof(float));
+    std::memcpy(to + dim, states + static_cast<size_t>(i) * dim_, dim_ * sizeof(float));
   }
+}
+
+void AgentMemory::push_rows(float* states, const float* seen, int32_t rows) const {
+  for (int32_t i = 0; i < rows; ++i)
+    push(states + at(i), seen + static_cast<size_t>(i) * rollout_->seen_dim());
 }
 
 void AgentMemory::stack_after(const float* x, const int32_t* env, int32_t rows, float* seen) const {

@@ -29,6 +29,10 @@ class AgentMemory {
   // first + i, or env[i]; with `pushed` [num_envs][obs_dim] a decision that saw these rows comes before.
   void stack(const float* x, int32_t first, int32_t rows, bool by_mean, float* seen) const;
   void stack_after(const float* x, const int32_t* env, int32_t rows, float* seen) const;
+  // The same of states [rows][dim()] that somebody else keeps, and such a state after a decision that saw these rows.
+  void stack_on(const float* x, const float* states, int32_t rows, float* seen) const;
+  void push_rows(float* states, const float* seen, int32_t rows) const;
+  size_t dim() const { return dim_; }
   const float* state(int32_t env, bool by_mean) const { return (by_mean ? mean_ : state_) + at(env); }
   // Of a GRU: the states behind the decision, which wait for `advance`, or by the mean hold at once.
   void keep_next(int32_t first, int32_t rows, bool by_mean, const float* h);

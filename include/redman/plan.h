@@ -98,9 +98,11 @@ RDM_API rdm_result rdm_actor_read_state(rdm_actor *actor, const void *bytes, siz
  *   c.stop = late;  c.user = &until;  ... until = now_ns() + 2000000;  rdm_planner_act(...) ...
  *
  * The model is the world itself: rollouts know even the random numbers that it will draw. One
- * planner follows one world's episode: call rdm_planner_reset when another begins. One thread at a
- * time. The same seed and calls give the same bytes for any number of threads. A plan is an action
- * for each of the next `horizon` steps of the pool. */
+ * planner follows one world's episode: call rdm_planner_reset when another begins. The planner
+ * keeps the state of a policy with a memory, from what the world shows in each call, so call it in
+ * each step: the state goes along in the rollouts, and begins anew where an episode begins. One
+ * thread at a time. The same seed and calls give the same bytes for any number of threads. A plan
+ * is an action for each of the next `horizon` steps of the pool. */
 typedef struct rdm_planner rdm_planner; /* handle */
 typedef struct rdm_planner_config { /* what a planner is made from */
   uint32_t struct_size;      /* bytes, set by rdm_planner_config_init */
@@ -186,8 +188,8 @@ RDM_API rdm_result rdm_planner_act(rdm_planner *planner, const rdm_pool *pool, i
 /* Async-signal-safe, from any thread: the running rdm_planner_act returns CANCELLED before the next
  * step of its rollouts, or else the next one does. NULL is fine. */
 RDM_API void rdm_planner_cancel(rdm_planner *planner);
-/* Forgets the plan; the stream of noise continues. The next plan begins at
- * rdm_pool_get_initial_mean, or the policy's rollout. */
+/* Forgets the plan, and what a policy with a memory remembers; the stream of noise continues. The
+ * next plan begins at rdm_pool_get_initial_mean, or the policy's rollout. */
 RDM_API rdm_result rdm_planner_reset(rdm_planner *planner);
 /* Writes the present plan to plan [horizon][action_dim]: row 0 is the action that rdm_planner_act
  * gave. */
@@ -195,8 +197,8 @@ RDM_API rdm_result rdm_planner_get_plan(const rdm_planner *planner, float *plan)
 /* The next rdm_planner_act begins at plan [horizon][action_dim], clipped to [-1, 1] and not
  * shifted. ARGUMENT for entries that are not finite. With a policy it is tried as sample 1. */
 RDM_API rdm_result rdm_planner_set_plan(rdm_planner *planner, const float *plan);
-/* Plan, noise and counters as bytes [capacity]; NULL asks for the size. A planner of the same task,
- * options, noise and limits that reads them continues with the same bytes. */
+/* Plan, memory, noise and counters as bytes [capacity]; NULL asks for the size. A planner of the
+ * same task, options, noise and limits that reads them continues with the same bytes. */
 RDM_API rdm_result rdm_planner_write_state(const rdm_planner *planner, void *bytes, size_t capacity,
                                            size_t *size);
 /* Of bytes [size]. FORMAT for bytes that are truncated or of another planner; nothing changes

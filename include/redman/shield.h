@@ -71,9 +71,19 @@ RDM_API rdm_result rdm_project(const float *normals, const float *bounds, size_t
  * rarer costs are. Costs are checked as the pool counts them, once a control step. Policies that
  * read points cannot be backups.
  *
+ * A policy with a memory as a backup: the shield keeps its state for each world and each copy. A
+ * state depends only on the observations of the decisions so far, and rdm_shield_act reads those of
+ * each decision. So the state equals that of an rdm_actor that plays by the same policy, and nobody
+ * has to hand it over. It begins anew where a world begins an episode, in each autoreset mode,
+ * where a world's state is set to one of another episode or of an earlier step, and by
+ * rdm_shield_reset. A decision that rdm_shield_act is not asked about is missing in it. The backup
+ * may then find fewer plans, but what is proven never depends on a state, because a plan is actions
+ * that were run in a copy.
+ *
  * What it takes: for n worlds, memory for n (block + 1 + tries + 1) copies of a world, n K (2 + 1 +
- * tries) with option copies=K, none with predict=false; and the time of the control steps that
- * copies simulate (rdm_shield_stats.copied). Only creation and rdm_shield_add_guard use the heap.
+ * tries) with option copies=K, none with predict=false, and as many states of each backup with a
+ * memory; and the time of the control steps that copies simulate (rdm_shield_stats.copied). Only
+ * creation, rdm_shield_add_policy, rdm_shield_add_guard and rdm_agent_set_shield use the heap.
  * One thread at a time. The same seed and calls give the same bytes for any number of threads. */
 typedef struct rdm_shield rdm_shield; /* handle */
 typedef struct rdm_shield_config { /* what a shield is made from */
@@ -196,11 +206,12 @@ RDM_API rdm_result rdm_shield_set_plan(rdm_shield *shield, const rdm_pool *pool,
 RDM_API rdm_result rdm_shield_get_plan(const rdm_shield *shield, const rdm_pool *pool, int32_t env,
                                        float *plan, size_t capacity, size_t *size);
 RDM_API rdm_result rdm_shield_get_stats(const rdm_shield *shield, rdm_shield_stats *io);
-/* Forgets the plans of the worlds whose mask [num_envs] is not 0; NULL: all. */
+/* Forgets the plans of the worlds whose mask [num_envs] is not 0 (NULL: all), and what backups with
+ * a memory remember of them. */
 RDM_API rdm_result rdm_shield_reset(rdm_shield *shield, const uint8_t *mask);
-/* Plans, noise, counts and the host's guards as bytes [capacity]; NULL asks for the size. A shield
- * of the same config with as many guards that reads them continues with the same bytes, if its pool
- * is set to the state of that moment too. */
+/* Plans, memories, noise, counts and the host's guards as bytes [capacity]; NULL asks for the size.
+ * A shield of the same config with as many guards that reads them continues with the same bytes, if
+ * its pool is set to the state of that moment too. */
 RDM_API rdm_result rdm_shield_write_state(const rdm_shield *shield, void *bytes, size_t capacity,
                                           size_t *size);
 /* Of bytes [size]. FORMAT for bytes that are truncated or of another shield; nothing changes
@@ -211,10 +222,12 @@ RDM_API rdm_result rdm_shield_read_state(rdm_shield *shield, const void *bytes, 
 /* From now on the shield checks every decision of rdm_agent_rollout; NULL: no shield any more. It
  * must be for a pool of as many worlds, and its decisions must last as long as the agent's, else
  * rollouts return ARGUMENT; it must outlive the agent, or be taken off before. Its first backup is
- * then the agent itself without noise. The shield checks as many decisions ahead as its option
- * block says, with the agent's noise; where the statistics of observations have changed since, the
- * actions that were checked are executed and learned from, with their own density. The agent's
- * option shield_learn says what it learns from decisions that the shield refuses or projects:
+ * then the agent itself without noise, with what the agent remembers (options history and memory),
+ * which a refusal does not change: it is of observations, not of actions. The shield checks as many
+ * decisions ahead as its option block says, with the agent's noise; where the statistics of
+ * observations have changed since, the actions that were checked are executed and learned from,
+ * with their own density. The agent's option shield_learn says what it learns from decisions that
+ * the shield refuses or projects:
  *
  *   own      the agent's own action and density, with the outcome of the one executed
  *   applied  the action executed, with its density

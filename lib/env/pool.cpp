@@ -6,6 +6,7 @@
 #include <memory>
 #include <new>
 
+#include "base/hash.hpp"
 #include "env/pool_internal.hpp"
 
 namespace rdm {
@@ -252,6 +253,11 @@ double Pool::gained(int32_t env) const {
 }
 double Pool::spent(int32_t env, int32_t cost) const {
   return impl_->slots[env].episode.sum_cost[cost];
+}
+uint64_t Pool::episode_mark(int32_t env) const {
+  const Episode& e = impl_->slots[env].episode;
+  const uint64_t name[] = {e.seed, e.reset.world(), e.reset.counter()};
+  return hash_bytes(name, sizeof name);
 }
 uint32_t Pool::course(int32_t env) const {
   return impl_->slots[env].course;

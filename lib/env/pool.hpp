@@ -138,6 +138,9 @@ class Pool {
   double spent(int32_t env, int32_t cost) const;
   // Task::set_limit of the episode that runs in a world, -1: in each. Error(kState) where none does: nothing changes.
   void set_limit(int32_t env, double limit);
+  // Which of the pool's episodes a world is in: it stays while the episode does, and in saved states and copies.
+  // Episodes that draw nothing at their reset may have the same one.
+  uint64_t episode_mark(int32_t env) const;
   // A number that stays while steps alone move a world: resets, saved states, copies and set_joints change it.
   uint32_t course(int32_t env) const;
   // As World::place_joints; the observation is then of these, and the world's other rows are those of no step.

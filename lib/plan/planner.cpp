@@ -133,6 +133,8 @@ void Planner::carve(Arena& arena) {
   courses_ = arena.make<Course>(n);
   standings_ = arena.make<Standing>(n);
   order_ = arena.make<int32_t>(n);
+  for (float** state : {&before_, &after_, &recalled_, &next_state_, &walked_})
+    *state = arena.make<float>(sz(state_dim_));
 }
 
 Planner::Planner(const PlannerConfig& c)
@@ -144,6 +146,7 @@ Planner::Planner(const PlannerConfig& c)
       stream_(c.seed, 0, Purpose::kPolicyNoise) {
   const HostScope scope(hooks_);
   read_options(c);
+  if (policy_) state_dim_ = policy_->state_dim();
   try {
     make_rollouts(c);
     Arena measure;
@@ -193,6 +196,7 @@ void Planner::start_plan(float* plan) const {
 void Planner::forget() {
   planned_ = given_ = false;
   since_ = 0;
+  seen_ = {};
   start_plan(plan_);
   std::fill_n(last_, action_dim_, 0.0f);
 }
@@ -225,23 +229,44 @@ bool Planner::stopped() {
   return stop_ && stop_(user_, steps_) != 0;
 }
 
+// In the steps in which it would decide without the planner.
+bool Planner::decides(const Pool& pool, int32_t env, int32_t t) const {
+  const int32_t steps = std::max(1, policy_->repeat() / pool.repeat());
+  return (pool.episode_step(env) / pool.repeat() + t) % steps == 0 || (t == 0 && !planned_);
+}
+
+void Planner::recall(const Pool& pool, int32_t env) {
+  const Passed passed = passed_since(seen_, pool, env);
+  if (passed == Passed::kEpisode)
+    std::fill_n(recalled_, state_dim_, 0.0f);
+  else
+    std::copy_n(passed == Passed::kSteps ? after_ : before_, state_dim_, recalled_);
+  std::copy_n(recalled_, state_dim_, next_state_);
+  if (!decides(pool, env, 0)) return;
+  policy_->act(pool.buffers().obs + sz(env) * sz(pool.obs_dim()), 1, next_state_, row_);
+  if (!sound_state(next_state_, state_dim_)) std::copy_n(recalled_, state_dim_, next_state_);
+}
+
+void Planner::remember(const Pool& pool, int32_t env) {
+  seen_ = moment_of(pool, env);
+  std::copy_n(recalled_, state_dim_, before_);
+  std::copy_n(next_state_, state_dim_, after_);
+}
+
 bool Planner::propose(const Pool& pool, int32_t env) {
   rollouts_->copy(0, pool, env);
   const Buffers& b = rollouts_->buffers();
-  const int32_t steps = std::max(1, policy_->repeat() / pool.repeat());
-  // the policy decides in the steps in which it would decide without the planner
-  const int32_t phase = pool.episode_step(env) / pool.repeat();
+  std::copy_n(recalled_, state_dim_, walked_);
   std::fill_n(alive_, settings_.samples, uint8_t{0});
   alive_[0] = 1;
   bool whole = true;
   for (int32_t t = 0; t < settings_.horizon; ++t) {
     float* action = centre_ + sz(t) * sz(action_dim_);
     const float* before = t > 0 ? action - action_dim_ : last_;
-    const bool due = (phase + t) % steps == 0 || (t == 0 && !planned_);
-    if (!alive_[0] || !due)
+    if (!alive_[0] || !decides(pool, env, t))
       std::copy_n(before, action_dim_, action);
     else
-      policy_->act(b.obs, 1, action);
+      policy_->act(b.obs, 1, walked_, action);
     for (int32_t j = 0; j < action_dim_; ++j)  // the last plan replaces what an overflow made infinite
       action[j] = std::isfinite(action[j]) ? clip_unit(action[j]) : before[j];
     if (!alive_[0] || t + 1 == settings_.horizon) continue;
@@ -408,6 +433,7 @@ void Planner::act(const Pool& pool, int32_t env, float* action, PlanInfo* info) 
   rollouts_->need_same(pool, "pool", "the planner");
   if (!pool.running(env)) fail(Code::kState, "act: no episode runs in world %d; reset it first", env);
   cancel_.check();
+  if (state_dim_) recall(pool, env);
   const bool follow = planned_ && given_ && since_ + 1 < settings_.replan;
   PlanInfo out;
   if (!follow) make_plan(pool, env, &out);
@@ -418,6 +444,7 @@ void Planner::act(const Pool& pool, int32_t env, float* action, PlanInfo* info) 
   // a plan that was not made is made in the next call
   since_ = out.iterations > 0 ? 0 : follow ? since_ + 1 : settings_.replan - 1;
   planned_ = given_ = true;
+  if (state_dim_) remember(pool, env);
   std::copy_n(plan_, action_dim_, last_);
   std::copy_n(plan_, action_dim_, action);
   if (info) *info = out;
@@ -429,6 +456,7 @@ uint64_t Planner::fingerprint() const {
   uint64_t hash = hash_bytes(lines.data(), lines.size() - 1);
   hash = hash_bytes(noise_std_, sz(action_dim_) * sizeof *noise_std_, hash);
   hash = hash_bytes(limit_, sz(cost_dim_) * sizeof *limit_, hash);
+  if (state_dim_) hash = hash_bytes(&state_dim_, sizeof state_dim_, hash);
   const uint64_t layout = layout_hash(rollouts_->task());
   return hash_bytes(&layout, sizeof layout, hash);
 }
@@ -448,6 +476,13 @@ void Planner::write_state(Writer& out) const {
   out.bytes(last_, dim * sizeof *last_);
   out.bytes(plan_, sz(settings_.horizon) * dim * sizeof *plan_);
   out.end_section();
+  if (state_dim_) {
+    out.begin_section("MEMO");
+    out.value(seen_.episode);
+    out.value(seen_.step);
+    for (const float* state : {before_, after_}) out.bytes(state, sz(state_dim_) * sizeof *state);
+    out.end_section();
+  }
   out.end_file();
 }
 
@@ -468,7 +503,21 @@ void Planner::read_state(const void* bytes, size_t size) {
   Reader rows = in;
   for (size_t i = 0; i < (1 + sz(settings_.horizon)) * dim; ++i) good &= std::abs(rows.value<float>()) <= 1;
   rows.expect_end();
+  Reader memory = in;
+  Moment seen;
+  if (state_dim_) {
+    memory.need_section("MEMO");
+    seen.episode = memory.value<uint64_t>();
+    seen.step = memory.value<int32_t>();
+    good &= seen.step >= -1;
+    Reader states = memory;
+    for (size_t i = 0; i < 2 * sz(state_dim_); ++i) good &= std::isfinite(states.value<float>());
+    states.expect_end();
+  }
   if (!good) fail(Code::kFormat, "planner state: a number is out of range");
+  seen_ = seen;
+  for (float* state : {before_, after_})
+    if (state_dim_) memory.bytes(state, sz(state_dim_) * sizeof *state);
   in.bytes(last_, dim * sizeof *last_);
   in.bytes(plan_, sz(settings_.horizon) * dim * sizeof *plan_);
   stream_ = stream;

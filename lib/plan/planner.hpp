@@ -11,12 +11,17 @@
 // The world is its own model: rollouts know what it will draw. The sum of a rollout ends where its episode
 // does; one that is still running at H adds the critic's value.
 //
+// A policy with a memory: its state goes along in its rollout, and the planner keeps the one of its world. As a state
+// hangs on the observations of the decisions so far alone, it is enough that a call sees each step of the world, as
+// calls do: in the steps in which the policy decides, it sees what the world shows, whether the call plans or follows
+// the plan. Another episode, another world and forget begin anew.
+//
 // A call ends early, between two steps of its rollouts, by cancel(): an error, and nothing has changed; or by
 // config.stop: what the finished iterations made of the plan is the plan, as if there were no more of them.
 #pragma once
 #include "base/cancel.hpp"
 #include "env/mean_policy.hpp"
-#include "env/pool.hpp"
+#include "env/moment.hpp"
 #include "plan/knots.hpp"
 #include "plan/ranking.hpp"
 
@@ -120,6 +125,9 @@ class Planner {
   void set_budgets(const Pool& pool, int32_t env);
   void make_plan(const Pool& pool, int32_t env, PlanInfo* out);  // as the centre
   bool stopped();                                                // asked between two steps; Error(kCancelled)
+  void recall(const Pool& pool, int32_t env);                    // recalled_ and next_state_ of this call
+  void remember(const Pool& pool, int32_t env);
+  bool decides(const Pool& pool, int32_t env, int32_t t) const;  // the policy, in step t of the plan
   // The policy's rollout from the state of `env`: its actions become the centre. False: stopped on the way.
   bool propose(const Pool& pool, int32_t env);
   void draw_noise();
@@ -158,6 +166,13 @@ class Planner {
   Course* courses_ = nullptr;                                    // [samples]
   Standing* standings_ = nullptr;                                // [samples]
   int32_t* order_ = nullptr;                                     // [samples]
+
+  // What the policy remembers of the world before and behind the step of the last call, the same of this call until it
+  // can no more fail, and of its rollout; [state_dim].
+  int32_t state_dim_ = 0;
+  Moment seen_;
+  float *before_ = nullptr, *after_ = nullptr, *recalled_ = nullptr, *next_state_ = nullptr;
+  float* walked_ = nullptr;
 
   Stream stream_;
   bool planned_ = false, given_ = false;  // there is a plan; its first row was given, so it is shifted next

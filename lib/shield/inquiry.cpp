@@ -43,15 +43,20 @@ void Shield::run_first(const Pool& pool, const float* proposed) {
     for (int32_t i = first_of(env); i < first_of(env + 1); ++i) {
       first_.start(i, pool, env, bound);
       if (set_.copies > 0) first_.redraw(i, drawn_[env]);
+      for (int32_t p = 0; p < num_policies_; ++p) memory_[p].copy(memory_[p].way, i, memory_[p].before, env);
     }
     std::copy_n(proposed + row_of(env), dim_, foreseen_own(env, 0));
-    if (foresight_) foresight_->begin(env, &foreseen_[env], offset_ + row_of(env));
+    if (!foresight_) continue;
+    Remembered& m = foreseen_memory_;
+    foresight_->begin(env, &foreseen_[env], offset_ + row_of(env), m.row(m.before, env));
+    for (int32_t i = first_of(env); i < first_of(env + 1); ++i) m.copy(m.way, i, m.before, env);
   }
   // The way is that of what is proposed, then of the backup; the states before its first decisions are kept.
   const int32_t foreseen = foresight_ ? set_.block : 1;
   for (int32_t d = 0; first_.any_going() && (set_.look == 0 || d < foreseen + set_.look); ++d) {
     for (int32_t i = 0; d <= set_.block && i < first_.count(); ++i)
-      if (first_.going(i)) kept_->copy(kept_of(i, d), first_.pool(), i);
+      if (first_.going(i)) keep_way(i, d);
+    if (d < set_.block) look_on_first(d == 0 ? -1 : d < foreseen ? num_own_ : order_[0]);
     if (d == 0)
       each_going([&](int32_t i) { std::copy_n(aim_ + row_of(i / worlds_), dim_, first_.action(i)); });
     else if (d < foreseen)
@@ -68,14 +73,32 @@ void Shield::run_first(const Pool& pool, const float* proposed) {
   }
 }
 
+// The state of a copy on a first way before decision d, and what backups remember there.
+void Shield::keep_way(int32_t i, int32_t d) {
+  kept_->copy(kept_of(i, d), first_.pool(), i);
+  for (int32_t x = 0; x < num_order_; ++x)
+    if (const Remembered* m = memory_of(order_[x])) m->copy(m->keep, kept_of(i, d), m->way, i);
+}
+
+// In a decision of the first ways all backups that remember see what the copies show, but the one that decides, which sees
+// it by deciding: each of them may be asked from there on.
+void Shield::look_on_first(int32_t decides) {
+  for (int32_t x = 0; x < num_order_; ++x)
+    if (order_[x] != decides && memory_of(order_[x])) look_on(order_[x], first_);
+}
+
+void Shield::look_on(int32_t b, const CopiesTried& copies) {
+  int32_t rows = 0;
+  for (int32_t i = 0; i < copies.count(); ++i)
+    if (copies.going(i)) list_[rows++] = i;
+  ask_backup(b, copies, rows);
+}
+
 // Decision d of those who propose; there is one copy of a world then.
 void Shield::foresee(int32_t d) {
   int32_t rows = 0;
-  each_going([&](int32_t i) {
-    std::copy_n(first_.obs(i), obs_, obs_rows_ + sz(rows) * sz(obs_));
-    list_[rows++] = i;
-  });
-  foresight_->act(list_, obs_rows_, rows, foreseen_, offset_, act_rows_);
+  each_going([&](int32_t i) { list_[rows++] = i; });
+  ask_foresight(first_, rows, true);
   for (int32_t i = 0; i < rows; ++i) {
     std::copy_n(act_rows_ + row_of(i), dim_, foreseen_own(list_[i], d));
     std::copy_n(act_rows_ + row_of(i), dim_, first_.action(list_[i]));
@@ -148,7 +171,9 @@ void Shield::try_branches(const Pool& pool) {
 
 void Shield::start_branch(int32_t env, int32_t i, const Branch& b) {
   for (int32_t c = 0; c < worlds_; ++c) {
-    tried_.start(i + c, *kept_, kept_of(first_of(env) + c, b.from), bound_ + sz(env) * sz(costs_));
+    const int32_t from = kept_of(first_of(env) + c, b.from);
+    tried_.start(i + c, *kept_, from, bound_ + sz(env) * sz(costs_));
+    if (const Remembered* m = memory_of(b.backup)) m->copy(m->branch, i + c, m->keep, from);
     backup_[i + c] = b.backup;
   }
   width_[i] = b.noise;
@@ -308,11 +333,33 @@ void Shield::back_up(CopiesTried* copies, const int32_t* backup) {
 
 // act_rows_ of the copies list_ [rows].
 void Shield::ask_backup(int32_t b, const CopiesTried& copies, int32_t rows) {
-  for (int32_t i = 0; i < rows; ++i) std::copy_n(copies.obs(list_[i]), obs_, obs_rows_ + sz(i) * sz(obs_));
-  if (b < num_policies_)
-    policies_[b]->act(obs_rows_, rows, act_rows_);
+  if (b >= num_policies_) return ask_foresight(copies, rows, false);
+  const Remembered& m = memory_[b];
+  gather(m, copies, rows);
+  policies_[b]->act(obs_rows_, rows, m.asked, act_rows_);
+  scatter(m, copies, rows);
+}
+
+void Shield::ask_foresight(const CopiesTried& copies, int32_t rows, bool with_noise) {
+  const Remembered& m = foreseen_memory_;
+  gather(m, copies, rows);
+  if (with_noise)
+    foresight_->act(list_, obs_rows_, rows, m.asked, foreseen_, offset_, act_rows_);
   else
-    foresight_->act(nullptr, obs_rows_, rows, nullptr, nullptr, act_rows_);
+    foresight_->act(nullptr, obs_rows_, rows, m.asked, nullptr, nullptr, act_rows_);
+  scatter(m, copies, rows);
+}
+
+// Rows of the copies list_ [rows], and what a backup remembers of them; and back.
+void Shield::gather(const Remembered& m, const CopiesTried& copies, int32_t rows) {
+  for (int32_t i = 0; i < rows; ++i) {
+    std::copy_n(copies.obs(list_[i]), obs_, obs_rows_ + sz(i) * sz(obs_));
+    m.copy(m.asked, i, states_of(m, copies), list_[i]);
+  }
+}
+
+void Shield::scatter(const Remembered& m, const CopiesTried& copies, int32_t rows) {
+  for (int32_t i = 0; i < rows; ++i) m.take(states_of(m, copies), list_[i], i);
 }
 
 void Shield::keep_guards(CopiesTried* copies, int32_t each) const {

@@ -105,6 +105,7 @@ Shield::Shield(const ShieldConfig& c) : hooks_(c.hooks), steps_(c.steps) {
     drawn_[i] = Stream(c.seed, static_cast<uint32_t>(i), Purpose::kShieldDraw);
   }
   std::fill_n(rows_, n_, ShieldRow{});
+  std::fill_n(seen_, n_, Moment{});
 }
 
 void Shield::read_budgets(const double* budgets) {
@@ -162,15 +163,25 @@ void Shield::add_policy(MeanPolicy* policy) {
   if (num_policies_ == kMostPolicies)
     fail(Code::kRange, "shield: it already has %d policies, the most that are allowed", kMostPolicies);
   need_tries(num_own_ + 1);
+  make_memory(&memory_[num_policies_], policy->state_dim());
   policies_[num_policies_++] = policy;
   ++num_own_;
+}
+
+void Shield::make_memory(Remembered* memory, int32_t dim) {
+  const HostScope scope(hooks_);
+  memory->make(hooks_, dim, n_, ways(), ways() * (set_.block + 1), branches());
+}
+
+void Shield::expect(int32_t state_dim) {
+  if (set_.predict && state_dim != foreseen_memory_.dim()) make_memory(&foreseen_memory_, state_dim);
 }
 
 void Shield::add_guard(const float* normal, float bound) {
   const FpMode fp;
   const HostScope scope(hooks_);
   guards_.add(-1, normal, bound);
-  forget(nullptr);
+  forget_plans();
 }
 
 void Shield::set_guard(int32_t env, int32_t i, const float* normal, float bound) {
@@ -200,6 +211,7 @@ void Shield::carve(Arena& arena) {
   aim_ = arena.make<float>(n * dim);
   plans_ = arena.make<Plan>(n);
   rows_ = arena.make<ShieldRow>(n);
+  seen_ = arena.make<Moment>(n);
   own_ = arena.make<float>(n * dim);
   refused_ = arena.make<float>(n * dim);
   moved_ = arena.make<uint8_t>(n);
@@ -229,8 +241,15 @@ void Shield::carve(Arena& arena) {
 }
 
 void Shield::forget(const uint8_t* mask) {
-  for (int32_t i = 0; i < n_; ++i)
-    if (!mask || mask[i]) plans_[i].length = 0;
+  for (int32_t i = 0; i < n_; ++i) {
+    if (mask && !mask[i]) continue;
+    plans_[i].length = 0;
+    seen_[i] = {};
+  }
+}
+
+void Shield::forget_plans() {
+  for (int32_t i = 0; i < n_; ++i) plans_[i].length = 0;
 }
 
 void Shield::skip(int32_t env) {
@@ -248,6 +267,7 @@ void Shield::forget_blocks() {
 int32_t Shield::place(const Pool& pool, int32_t env) const {
   const Plan& p = plans_[env];
   if (p.length == 0 || (!p.adopt && p.course != pool.course(env))) return -1;
+  if (p.adopt && seen_[env].step >= 0 && passed_since(seen_[env], pool, env) == Passed::kEpisode) return -1;
   const int32_t steps = pool.episode_step(env) - p.begin;
   return steps >= 0 && steps % stride_ == 0 && steps / stride_ < p.length ? steps / stride_ : -1;
 }
@@ -281,6 +301,36 @@ void Shield::check_pool(const Pool& pool) const {
     fail(Code::kArgument, "pool: it has %d worlds, but the shield is for %d", pool.config().num_envs, n_);
 }
 
+template <class F>
+void Shield::notice_by(int32_t policy, const Pool& pool, F&& named) {
+  const Remembered& m = memory_[policy];
+  int32_t rows = 0;
+  for (int32_t env = 0; env < n_; ++env) {
+    if (!named(env)) continue;
+    const Passed passed = passed_since(seen_[env], pool, env);
+    if (passed == Passed::kEpisode) m.clear(m.before, env);
+    if (passed == Passed::kSteps) m.copy(m.before, env, m.after, env);
+    m.copy(m.after, env, m.before, env);  // where the network overflows it stays so
+    m.copy(m.asked, rows, m.before, env);
+    std::copy_n(pool.buffers().obs + sz(env) * sz(obs_), obs_, obs_rows_ + sz(rows) * sz(obs_));
+    list_[rows++] = env;
+  }
+  policies_[policy]->act(obs_rows_, rows, m.asked, act_rows_);
+  for (int32_t i = 0; i < rows; ++i) m.take(m.after, list_[i], i);
+}
+
+// It may be called again in the same decision, as after an error: the states before it stay then.
+template <class F>
+void Shield::notice(const Pool& pool, F&& named) {
+  for (int32_t p = 0; p < num_policies_; ++p)
+    if (memory_[p]) notice_by(p, pool, named);
+  for (int32_t env = 0; env < n_; ++env) {
+    if (!named(env)) continue;
+    if (plans_[env].adopt && place(pool, env) < 0) plans_[env].length = 0;
+    seen_[env] = moment_of(pool, env);
+  }
+}
+
 void Shield::act(const Pool& pool, const uint8_t* mask, const float* proposed, Foresight* foresight,
                  float* action, bool unneeded) {
   const FpMode fp;
@@ -301,6 +351,7 @@ void Shield::act(const Pool& pool, const uint8_t* mask, const float* proposed, F
   for (int32_t env = 0; env < n_; ++env)
     if (named(env)) guards_.project(env, proposed + row_of(env), aim_ + row_of(env));
   num_asked_ = 0;
+  if (set_.predict) notice(pool, named);
   if (set_.predict) predict(pool, mask, proposed, foresight, unneeded);
   for (int32_t asked = 0, env = 0; env < n_; ++env) {
     if (!named(env)) continue;
@@ -308,6 +359,13 @@ void Shield::act(const Pool& pool, const uint8_t* mask, const float* proposed, F
     asked += now;
     give(pool, env, proposed, now, foresight != nullptr, action);
   }
+}
+
+Remembered* Shield::memory_of(int32_t backup) {
+  Remembered* m = backup < num_policies_             ? &memory_[backup]
+                  : backup == num_own_ && foresight_ ? &foreseen_memory_
+                                                     : nullptr;
+  return m && *m ? m : nullptr;
 }
 
 void Shield::predict(const Pool& pool, const uint8_t* mask, const float* proposed, Foresight* foresight,
@@ -384,6 +442,7 @@ void Shield::set_plan(const Pool& pool, int32_t env, const float* actions, int32
     fail(Code::kRange, "plan: the number of decisions, %d, is outside [1, %d]", count, length_);
   for (size_t j = 0; j < row_of(count); ++j)
     if (!std::isfinite(actions[j])) fail(Code::kArgument, "plan: entry %zu is not finite", j);
+  notice(pool, [&](int32_t i) { return i == env; });
   order_backups(nullptr);
   // It is tried with each backup behind its end, until one is clean.
   for (int32_t b = 0;; ++b) {
@@ -416,10 +475,13 @@ int32_t Shield::run_plan(const Pool& pool, int32_t env, const float* actions, in
   const int32_t i = first_of(env), end = plan_end(count);
   first_.stop_all();
   first_.start(i, pool, env, bound_of(pool, env));
+  Remembered* const m = b < num_order_ ? memory_of(order_[b]) : nullptr;
+  if (m) m->copy(m->way, i, m->before, env);
   int32_t d = 0;
   for (; first_.going(i) && d < end && (d < count || b < num_order_); ++d) {
     if (d < count) {
       guards_.project(env, actions + row_of(d), first_.action(i));
+      if (m) look_on(order_[b], first_);
     } else {
       backup_[i] = order_[b];
       back_up(&first_, backup_);

@@ -31,9 +31,10 @@
 #include <algorithm>
 
 #include "base/rng.hpp"
-#include "env/mean_policy.hpp"
+#include "env/moment.hpp"
 #include "shield/copies_tried.hpp"
 #include "shield/guards.hpp"
+#include "shield/remembered.hpp"
 
 namespace rdm {
 
@@ -42,12 +43,16 @@ const OptionSpec* shield_options(int32_t* count);
 // What will be proposed in the decisions to come, by the one who proposed the first.
 class Foresight {
  public:
-  // Noise of world `env` behind the decision that was proposed: its stream and offset [action_dim].
-  virtual void begin(int32_t env, Stream* noise, float* offset) = 0;
+  // Numbers that it remembers of a world, at most those that Shield::expect was told of.
+  virtual int32_t state_dim() const = 0;
+  // Noise of world `env` behind the decision that was proposed: its stream and offset [action_dim]; and what it
+  // remembers of the world before that decision, [state_dim].
+  virtual void begin(int32_t env, Stream* noise, float* offset, float* state) = 0;
   // The next decision of worlds env [rows], of obs [rows][obs_dim]: action [rows][action_dim]. noise
-  // [num_envs] and offset [num_envs][action_dim] are those of begin, and go on; null: without noise.
-  virtual void act(const int32_t* env, const float* obs, int32_t rows, Stream* noise, float* offset,
-                   float* action) = 0;
+  // [num_envs] and offset [num_envs][action_dim] are those of begin, and go on; null: without noise. state
+  // [rows][state_dim] is what it remembers before, and becomes that after.
+  virtual void act(const int32_t* env, const float* obs, int32_t rows, float* state, Stream* noise,
+                   float* offset, float* action) = 0;
 
  protected:
   ~Foresight() = default;
@@ -105,6 +110,7 @@ class Shield {
   static Shield* create(const ShieldConfig& config);
   static void destroy(Shield* s);
   void add_policy(MeanPolicy* policy);  // a backup behind those that it has; it outlives the shield
+  void expect(int32_t state_dim);       // of whoever will foresee
   // As Guards::add and Guards::set.
   void add_guard(const float* normal, float bound);
   void set_guard(int32_t env, int32_t i, const float* normal, float bound);
@@ -114,13 +120,14 @@ class Shield {
   // foresaw them, and what it would do without noise is the first backup. Error(kState) for a world without an
   // episode, or that has nothing clean, which it names: no action is written then. With `unneeded` the host
   // does not run what is refused: with unproven=error nothing clean is no error then, and the action is what
-  // was proposed. No heap use.
+  // was proposed. No heap use. What backups remember of a world goes on with its decisions, which are all to be
+  // asked about.
   void act(const Pool& pool, const uint8_t* mask, const float* proposed, Foresight* foresight, float* action,
            bool unneeded = false);
   // Actions [count][action_dim] become the plan of world env where they, and then a backup, are clean in a copy; else
   // Error(kState) says what would come, and its plan stays. No heap use.
   void set_plan(const Pool& pool, int32_t env, const float* actions, int32_t count);
-  void forget(const uint8_t* mask);  // plans of worlds whose mask is not 0 (null: all)
+  void forget(const uint8_t* mask);  // plans and memories of worlds whose mask is not 0 (null: all)
   void skip(int32_t env);            // a world without an episode: its last decision is its own
   void forget_blocks();              // only what was foreseen: its policy has changed
   const ShieldRow& row(int32_t env) const { return rows_[env]; }
@@ -139,7 +146,7 @@ class Shield {
   bool predicts() const { return set_.predict; }
   const Options& options() const { return options_; }
 
-  // Plans, streams and counts: a shield of the same config that reads them goes on with the same bytes, beside
+  // Plans, memories, streams and counts: a shield of the same config that reads them goes on with the same bytes, beside
   // a pool that was set to the state of that moment.
   void write_state(Writer& out) const;
   void read_state(const void* bytes, size_t size);  // Error(kFormat): unchanged
@@ -192,6 +199,23 @@ class Shield {
   size_t row_of(int32_t i) const { return static_cast<size_t>(i) * static_cast<size_t>(dim_); }
   size_t plan_of(int32_t i) const { return row_of(i) * static_cast<size_t>(length_); }
   int32_t kept_of(int32_t copy, int32_t d) const { return copy * (set_.block + 1) + d; }
+  int32_t ways() const { return n_ * worlds_; }
+  int32_t branches() const { return ways() * set_.tries; }
+  Remembered* memory_of(int32_t backup);  // null: it has none
+  void make_memory(Remembered* memory, int32_t dim);
+  // Of worlds for which named(env) is true: what backups remember of its decisions up to this one.
+  template <class F>
+  void notice(const Pool& pool, F&& named);
+  template <class F>
+  void notice_by(int32_t policy, const Pool& pool, F&& named);
+  // Backup b sees what the copies that go show, and its action is none of theirs.
+  void look_on(int32_t b, const CopiesTried& copies);
+  void look_on_first(int32_t decides);
+  void keep_way(int32_t i, int32_t d);
+  void ask_foresight(const CopiesTried& copies, int32_t rows, bool with_noise);
+  void gather(const Remembered& m, const CopiesTried& copies, int32_t rows);
+  void scatter(const Remembered& m, const CopiesTried& copies, int32_t rows);
+  void forget_plans();
 
   // The decision of its plan that a world is at; -1: the plan is none of its episode as it is.
   int32_t place(const Pool& pool, int32_t env) const;
@@ -237,6 +261,9 @@ class Shield {
   // Of the copies that go, the actions of backup[i] into their rows.
   void back_up(CopiesTried* copies, const int32_t* backup);
   void ask_backup(int32_t backup, const CopiesTried& copies, int32_t rows);
+  float* states_of(const Remembered& memory, const CopiesTried& copies) const {
+    return &copies == &first_ ? memory.way : memory.branch;
+  }
   // The actions of copies that go, `each` of them for a world, to the guards' side.
   void keep_guards(CopiesTried* copies, int32_t each) const;
 
@@ -245,6 +272,7 @@ class Shield {
   ShieldOptions set_{};
   MeanPolicy* policies_[kMostPolicies] = {};
   int32_t num_policies_ = 0, num_own_ = 0;  // backups that the shield has whoever proposes
+  Remembered memory_[kMostPolicies], foreseen_memory_;
   // Of this call: who foresees, and the backups in the order in which they are tried.
   Foresight* foresight_ = nullptr;
   int32_t order_[kMostPolicies + 3] = {}, num_order_ = 0;
@@ -262,6 +290,7 @@ class Shield {
   float* aim_ = nullptr;                     // [n][dim] what is proposed, projected
   Plan* plans_ = nullptr;                    // [n]
   ShieldRow* rows_ = nullptr;                // [n]
+  Moment* seen_ = nullptr;                   // [n] of the last decision
   Inquiry* inquiries_ = nullptr;             // [n], of which num_asked_, by rising env
   int32_t num_asked_ = 0;
   float *own_ = nullptr, *refused_ = nullptr;  // [n][dim] as proposed

@@ -1,4 +1,5 @@
-// A shield's state as bytes: plans, streams, counts and the host's guards, with what says whose they are.
+// A shield's state as bytes: plans, streams, counts and the host's guards, with what says whose they are; behind them, in
+// a section that states of 1.0.0 do not have, which decisions were seen last and what backups remember of them.
 #include <cmath>
 
 #include "base/error.hpp"
@@ -19,6 +20,8 @@ uint64_t Shield::fingerprint() const {
   hash = hash_bytes(budget_, static_cast<size_t>(costs_) * sizeof *budget_, hash);
   const int32_t sizes[] = {n_, dim_, stride_, length_, num_policies_};
   hash = hash_bytes(sizes, sizeof sizes, hash);
+  for (int32_t p = 0; p < num_policies_; ++p)
+    if (const int32_t dim = memory_[p].dim()) hash = hash_bytes(&dim, sizeof dim, hash);
   hash = guards_.hash(hash);
   return hash_bytes(&layout_, sizeof layout_, hash);
 }
@@ -47,6 +50,15 @@ void Shield::write_state(Writer& out) const {
     out.bytes(plan_ + plan_of(i), row_of(p.length) * sizeof *plan_);
   }
   out.end_section();
+  out.begin_later_section("SEEN");
+  for (int32_t i = 0; i < n_; ++i) {
+    out.value(seen_[i].episode);
+    out.value(seen_[i].step);
+  }
+  for (int32_t p = 0; p < num_policies_; ++p)
+    for (const float* states : {memory_[p].before, memory_[p].after})
+      out.bytes(states, memory_[p].size(n_) * sizeof *states);
+  out.end_section();
   out.end_file();
 }
 
@@ -54,6 +66,7 @@ void Shield::read_state(const void* bytes, size_t size) {
   const HostScope scope(hooks_);
   Reader in(bytes, size, "shield state");
   in.begin_file(kStateMagic, kStateVersion);
+  in.need_whole_tags("HEADGARDPLAN");
   in.need_section("HEAD");
   if (in.value<uint64_t>() != fingerprint())
     fail(Code::kFormat,
@@ -86,6 +99,16 @@ void Shield::read_state(const void* bytes, size_t size) {
     if (!good) break;
     numbers(2 + p.length);
   }
+  Reader memory = in;
+  const bool has_seen = memory.find_later_section("SEEN");
+  Reader numbers_in = memory;
+  for (int32_t i = 0; has_seen && i < n_; ++i) {
+    numbers_in.value<uint64_t>();
+    good &= numbers_in.value<int32_t>() >= -1;
+  }
+  for (int32_t p = 0; has_seen && p < num_policies_; ++p)
+    for (size_t j = 0; j < 2 * memory_[p].size(n_); ++j) good &= std::isfinite(numbers_in.value<float>());
+  if (has_seen) numbers_in.expect_end();
   if (!good) fail(Code::kFormat, "shield state: a number is out of range");
   look.expect_end();
   guards_.read(guards);
@@ -99,7 +122,14 @@ void Shield::read_state(const void* bytes, size_t size) {
     in.bytes(own_ + row_of(i), row_of(1) * sizeof *own_);
     in.bytes(refused_ + row_of(i), row_of(1) * sizeof *refused_);
     in.bytes(plan_ + plan_of(i), row_of(plans_[i].length) * sizeof *plan_);
+    seen_[i] = {};
+    if (!has_seen) continue;
+    seen_[i].episode = memory.value<uint64_t>();
+    seen_[i].step = memory.value<int32_t>();
   }
+  for (int32_t p = 0; has_seen && p < num_policies_; ++p)
+    for (float* states : {memory_[p].before, memory_[p].after})
+      memory.bytes(states, memory_[p].size(n_) * sizeof *states);
 }
 
 }  // namespace rdm

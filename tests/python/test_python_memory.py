@@ -1,4 +1,5 @@
-"""Policies that remember: act takes a state and gives the next one, actors and predict keep it, agents forget."""
+"""Policies that remember: act takes a state and gives the next one, actors and predict keep it, agents forget; shields and
+planners keep it too."""
 import unittest
 
 import numpy as np
@@ -74,6 +75,44 @@ class Memory(unittest.TestCase):
         self.assertFalse(np.array_equal(again[1], first[1]))
         with self.assertRaisesRegex(redman.ArgumentError, "mask"):
             agent.forget("mean", [True])
+
+    def test_shields_and_planners_keep_it(self):
+        for name, settings in SETTINGS.items():
+            with self.subTest(name):
+                line = redman.Pool("lqr_line", num_envs=3, seed=5)
+                line.reset()
+                agent = redman.Agent(line, algo="ppo", seed=1, options={**settings, "horizon": 20})
+                agent.shield = redman.Shield(line, budgets=0.05, options={"unproven": "least"})  # it learns under one
+                self.assertGreater(agent.rollout(line).refused, 0)
+                agent.shield = None
+                for _ in range(3):
+                    agent.rollout(line)
+                policy = agent.policy()
+                self.assertGreater(policy.info.state_dim, 0)
+
+                # who plays by the policy has the shield's state of it: what its plans go on by is what is proposed
+                pool = redman.Pool("lqr_line", num_envs=3, seed=6)
+                pool.reset()
+                shield, actor = redman.Shield(pool, policy, budgets=1e9, options={"zero": False, "hold": False}), policy.actor(pool)
+                for _ in range(60):  # three episodes
+                    pool.step(shield.act(actor()))
+                self.assertEqual((shield.stats.inquiries, shield.interventions), (3 * 3, 0))
+
+                # without noise a planner plays as the policy that proposes
+                single = redman.Pool("lqr_line", num_envs=1, seed=7)
+                single.reset()
+                planner, alone = redman.Planner(single, policy=policy, options={"samples": 1, "horizon": 2}), policy.actor(single)
+                for _ in range(45):
+                    wanted = np.array(alone())
+                    np.testing.assert_array_equal(np.ravel(planner.act()), np.ravel(wanted))
+                    single.step(wanted)
+
+                # an evaluation under a shield
+                free, kept = (redman.evaluate(policy, "lqr_line", episodes=8, num_envs=4, seed=3, shield=said)
+                              for said in (None, {"unproven": "least", "budgets": 0.01}))
+                self.assertGreater(free.costs[:, 0].max(), 0.02)
+                self.assertLessEqual(kept.costs[:, 0].max(), 0.0101)
+                self.assertGreater(kept.interventions, 0)
 
     def test_it_is_cloned_from_a_recording(self):
         pool = redman.Pool("recall", num_envs=32, seed=3)

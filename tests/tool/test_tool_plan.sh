@@ -45,6 +45,15 @@ check 'the record ends elsewhere' grep -q "\"recorded_hash\":$hash" replay
 check 'a policy alone acts otherwise in a planner' \
   test "$(number return_mean proposed)" = "$(number return_mean alone)"
 
+# and one with a memory, which goes along in what the planner tries
+for memory in memory=gru:6 history=4; do
+  "$tool" train --task lqr_line --steps 2000 --envs 4 --set horizon=20 --set $memory --out runs/$memory --json > train 2> err || { cat err; exit 1; }
+  "$tool" plan --policy runs/$memory --samples 1 --horizon 2 --episodes 5 --seed 4 --json > proposed || exit 1
+  "$tool" eval --policy runs/$memory --episodes 5 --envs 1 --seed 4 --json > alone || exit 1
+  check "a policy with $memory acts otherwise in a planner" \
+    test "$(number return_mean proposed)" = "$(number return_mean alone)"
+done
+
 # a run's critic values the end: a plan of one step sees further by it
 short="--horizon 1 --samples 64 --plan noise=0.3 --plan discount=0.9 --episodes 20 --seed 5"
 # shellcheck disable=SC2086

@@ -60,6 +60,27 @@ check 'eval of a run is shielded' sh -c '! grep -q interventions free.json'
 "$tool" eval --policy whole --episodes 20 --shield predict --json > under.json || exit 1
 check 'eval of a run is not shielded' grep -q '"interventions":' under.json
 
+# a policy with a memory learns under one, goes on when it was broken off, and is the backup of one that plays
+remember="--task hand_over_safe_joint --envs 8 --steps 12000 --seed 2 --set memory=gru:8 --set hidden=16 --set last_layer_scale=5 --shield predict --no-tensorboard --json"
+# shellcheck disable=SC2086
+"$tool" train $remember --out gru > gru.json 2> err || { cat err; exit 1; }
+check 'violations in training with a memory' test "$(number training_violating_steps gru.json)" = 0
+check 'nothing was refused with a memory' less 0 "$(number training_interventions gru.json)"
+# shellcheck disable=SC2086
+"$tool" train $remember --out stopped > stopped.json 2> /dev/null &
+pid=$!
+while kill -0 $pid 2> /dev/null && { [ ! -f stopped/progress.csv ] || [ "$(wc -l < stopped/progress.csv)" -lt 6 ]; }; do sleep 0.02; done
+kill -INT $pid
+wait $pid
+check 'the run with a memory was over before it was broken off' less "$(number env_steps stopped.json)" 12000
+"$tool" train --resume stopped --json > rest.json 2> /dev/null || exit 1
+same gru stopped 'with a memory broken off and resumed'
+"$tool" eval --policy gru --episodes 8 --seed 3 --json > free.json || exit 1
+"$tool" eval --policy gru --episodes 8 --seed 3 --shield predict --json > under.json || exit 1
+check 'its policy violates nothing' less 0 "$(number violating_steps free.json)"
+check 'its policy violates under the shield' test "$(number violating_steps under.json)" = 0
+"$tool" render --policy gru --shield predict --seed 5 --strip 2 --size 120x90 --out strip.png > /dev/null || exit 1
+
 refused() {  # refused TEXT ARGUMENTS...
   text=$1
   shift

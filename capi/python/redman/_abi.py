@@ -5529,8 +5529,8 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_planner_reset": Function(
         c_int32, {"planner": c_void_p},
         {}, True,
-        """Forgets the plan; the stream of noise continues. The next plan begins at
-        rdm_pool_get_initial_mean, or the policy's rollout.
+        """Forgets the plan, and what a policy with a memory remembers; the stream of noise continues. The
+        next plan begins at rdm_pool_get_initial_mean, or the policy's rollout.
         """),
     "rdm_planner_get_plan": Function(
         c_int32, {"planner": c_void_p, "plan": c_void_p},
@@ -5547,8 +5547,8 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_planner_write_state": Function(
         c_int32, {"planner": c_void_p, "bytes": c_void_p, "capacity": c_size_t, "size": c_void_p},
         {}, True,
-        """Plan, noise and counters as bytes [capacity]; NULL asks for the size. A planner of the same task,
-        options, noise and limits that reads them continues with the same bytes.
+        """Plan, memory, noise and counters as bytes [capacity]; NULL asks for the size. A planner of the
+        same task, options, noise and limits that reads them continues with the same bytes.
         """),
     "rdm_planner_read_state": Function(
         c_int32, {"planner": c_void_p, "bytes": c_void_p, "size": c_size_t},
@@ -5685,13 +5685,15 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_shield_reset": Function(
         c_int32, {"shield": c_void_p, "mask": c_void_p},
         {"mask": Rows("uint8", ("num_envs",))}, True,
-        """Forgets the plans of the worlds whose mask [num_envs] is not 0; NULL: all."""),
+        """Forgets the plans of the worlds whose mask [num_envs] is not 0 (NULL: all), and what backups with
+        a memory remember of them.
+        """),
     "rdm_shield_write_state": Function(
         c_int32, {"shield": c_void_p, "bytes": c_void_p, "capacity": c_size_t, "size": c_void_p},
         {}, True,
-        """Plans, noise, counts and the host's guards as bytes [capacity]; NULL asks for the size. A shield
-        of the same config with as many guards that reads them continues with the same bytes, if its pool
-        is set to the state of that moment too.
+        """Plans, memories, noise, counts and the host's guards as bytes [capacity]; NULL asks for the size.
+        A shield of the same config with as many guards that reads them continues with the same bytes, if
+        its pool is set to the state of that moment too.
         """),
     "rdm_shield_read_state": Function(
         c_int32, {"shield": c_void_p, "bytes": c_void_p, "size": c_size_t},
@@ -5705,10 +5707,12 @@ FUNCTIONS: dict[str, Function] = {
         """From now on the shield checks every decision of rdm_agent_rollout; NULL: no shield any more. It
         must be for a pool of as many worlds, and its decisions must last as long as the agent's, else
         rollouts return ARGUMENT; it must outlive the agent, or be taken off before. Its first backup is
-        then the agent itself without noise. The shield checks as many decisions ahead as its option
-        block says, with the agent's noise; where the statistics of observations have changed since, the
-        actions that were checked are executed and learned from, with their own density. The agent's
-        option shield_learn says what it learns from decisions that the shield refuses or projects:
+        then the agent itself without noise, with what the agent remembers (options history and memory),
+        which a refusal does not change: it is of observations, not of actions. The shield checks as many
+        decisions ahead as its option block says, with the agent's noise; where the statistics of
+        observations have changed since, the actions that were checked are executed and learned from,
+        with their own density. The agent's option shield_learn says what it learns from decisions that
+        the shield refuses or projects:
 
           own      the agent's own action and density, with the outcome of the one executed
           applied  the action executed, with its density
