@@ -461,6 +461,16 @@ TEST(ShieldMemory, TakesNothingFromTheHeap) {
     ASSERT_EQ(rdm_pool_step(pool.get()), RDM_OK);
   }
   EXPECT_EQ(heap_count(), before);
+  // nor do an agent's rollouts after the first one, with a backup that remembers beside the agent
+  for (const char* kind : {kGru, kHistory}) {
+    const Agent agent = drawn_agent(pool, std::string(kind) + "\nhorizon=20", 1);
+    ASSERT_EQ(rdm_agent_set_shield(agent.get(), shield.get()), RDM_OK);
+    for (int i = 0; i < 4; ++i) {
+      if (i == 1) before = heap_count();
+      ASSERT_EQ(rdm_agent_rollout(agent.get(), pool.get(), nullptr), RDM_OK) << rdm_agent_error(agent.get());
+    }
+    EXPECT_EQ(heap_count(), before) << kind;
+  }
 }
 
 // A plan of a host ends before the episode; the backup that goes on behind it has seen what came before.
