@@ -7,6 +7,7 @@
 # there are. Rows of earlier calls stay, and their runs are not made again, also where OUT is gone (AGAIN=1 makes them anew).
 #   PLAN=1 bash examples/leaderboard.sh
 # trains nothing but 40,000 steps of each task, and writes RESULTS/leaderboard_plan.csv: how long all of it would take.
+# HOURS=0.001 trains nothing more and writes the page of what is there.
 # Environment: REDMAN (the tool), TASKS, ALGOS (default: all), SEEDS (0..4), JOBS (runs at once, one thread each; 0: each core),
 # HOURS (time after which runs are stopped, to be gone on with later; none), SCALE (1; factor on the numbers of steps).
 set -eu
@@ -106,6 +107,10 @@ awk -F, 'FILENAME ~ /scores.csv$/ { if (FNR == 1) { for (i = 1; i <= NF; ++i) at
   { if (!($1 in random)) next
     span = best[$1] - random[$1]; s = over || !($1 in best) || span <= 0 ? 0 : ($5 - random[$1]) / span
     printf "%s,%s,%.6g\n", $1, $2, s < 0 ? 0 : s }' "$root/examples/results/scores.csv" "$csv" "$csv" > "$scores"
+# Algorithms that have not run on each task yet cannot be compared over all of them.
+partial=$(awk -F, 'NR > 1 { if (!($1 in task)) ++tasks; task[$1]; if (!(($1, $2) in seen)) ++n[$2]; seen[$1, $2] }
+  END { for (a in n) if (n[a] < tasks) print a }' "$scores" | sort)
+for algo in $partial; do sed -i "/^[^,]*,$algo,/d" "$scores"; done
 {
   echo "# Leaderboard"
   echo
@@ -125,7 +130,8 @@ awk -F, 'FILENAME ~ /scores.csv$/ { if (FNR == 1) { for (i = 1; i <= NF; ++i) at
   echo "The score of a run is its return, from that of random actions (0) to the best mean of an algorithm within the limit on that task (1); a run"
   echo "above its limit has 0. Algorithms without a common letter under \`group\` differ (\`redman compare\`)."
   echo
-  "$redman" compare "$scores" --over task --value score --markdown
+  [ "$(wc -l < "$scores")" -eq 1 ] || "$redman" compare "$scores" --over task --value score --markdown
+  [ -z "$partial" ] || printf '\nNot compared, since they have not run on each of these tasks yet: %s.\n' "$(sed 's/.*/`&`/' <<< "$partial" | paste -sd, | sed 's/,/, /g')"
   for task in $(awk -F, 'NR > 1 && !seen[$1]++ { print $1 }' "$csv"); do
     printf '\n## %s\n\n' "$task"
     awk -F, -v task="$task" 'NR > 1 && $1 == task { limit = $7; if (!($2 in n)) order[++count] = $2; ++n[$2]; r[$2] += $5; rr[$2] += $5 * $5; c[$2] += $6; s[$2] += $8
