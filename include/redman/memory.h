@@ -19,9 +19,9 @@ extern "C" {
  */
 /* As rdm_policy_act, of obs [rows][obs_dim], noise [rows][action_dim] or NULL, action
  * [rows][action_dim] and scratch [scratch_bytes], for any policy that reads no points (for those
- * that do, rdm_policy_act_points_state): state [rows][state_dim] is read, and becomes that after the decision; NULL only where state_dim is 0.
- * ARGUMENT for a state that is not finite. On errors the state stays as it is, except where the
- * network overflows. */
+ * that do, rdm_policy_act_points_state): state [rows][state_dim] is read, and becomes that after
+ * the decision; NULL only where state_dim is 0. ARGUMENT for a state that is not finite. On errors
+ * the state stays as it is, except where the network overflows. */
 RDM_API rdm_result rdm_policy_act_state(const rdm_policy *p, const float *obs, float *state,
                                         int32_t rows, const float *noise, float *action,
                                         void *scratch, size_t scratch_bytes);

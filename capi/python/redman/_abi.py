@@ -5730,9 +5730,9 @@ FUNCTIONS: dict[str, Function] = {
         {"obs": Rows("float32", ("rows", "obs_dim")), "state": Rows("float32", ("rows", "state_dim")), "noise": Rows("float32", ("rows", "action_dim")), "action": Rows("float32", ("rows", "action_dim"))}, True,
         """As rdm_policy_act, of obs [rows][obs_dim], noise [rows][action_dim] or NULL, action
         [rows][action_dim] and scratch [scratch_bytes], for any policy that reads no points (for those
-        that do, rdm_policy_act_points_state): state [rows][state_dim] is read, and becomes that after the decision; NULL only where state_dim is 0.
-        ARGUMENT for a state that is not finite. On errors the state stays as it is, except where the
-        network overflows.
+        that do, rdm_policy_act_points_state): state [rows][state_dim] is read, and becomes that after
+        the decision; NULL only where state_dim is 0. ARGUMENT for a state that is not finite. On errors
+        the state stays as it is, except where the network overflows.
         """),
     "rdm_agent_forget": Function(
         c_int32, {"a": c_void_p, "mode": c_int32, "mask": c_void_p},
