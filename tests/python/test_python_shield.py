@@ -207,7 +207,7 @@ class States(unittest.TestCase):
         self.assertTrue(same(other.act(proposed), out))
         with self.assertRaisesRegex(redman.ArgumentError, "no action of world 1"):
             shield.set_guard(1, 0, normal, -100)
-        with self.assertRaisesRegex(redman.ArgumentError, "normal: shape"):
+        with self.assertRaisesRegex(redman.ArgumentError, "normal: its shape"):
             shield.add_guard([1, 2], 0)
         with self.assertRaisesRegex(redman.ArgumentError, "row 0: its normal is 0"):
             redman.project([[0, 0]], [1], [0, 0])
@@ -233,7 +233,7 @@ class States(unittest.TestCase):
         with self.assertRaisesRegex(redman.StateError, "world 1: under the plan cost column 0"):
             shield.set_plan(np.repeat(plan, 4, 0), env=1)
         self.assertTrue(same(shield.plan(1), before))
-        with self.assertRaisesRegex(redman.ArgumentError, r"plan: shape \(3,\)"):
+        with self.assertRaisesRegex(redman.ArgumentError, r"plan: its shape is \(3,\)"):
             shield.set_plan([1, 2, 3])
         shield.act(np.zeros((2, pool.action_dim)))
         self.assertEqual(shield.kinds.tolist(), [shield.row(env).kind for env in (0, 1)])
@@ -268,9 +268,9 @@ class Refused(unittest.TestCase):
                 (lambda: redman.Shield(pool, options={"noise": 3}), redman.RangeError, "noise"),
                 (lambda: redman.Shield(pool, steps=2000), redman.RangeError, "steps"),
                 (lambda: redman.Shield("bandit"), redman.UsageError, "shield=True"),
-                (lambda: shield.act(np.zeros((3, pool.action_dim))), redman.ArgumentError, "proposed: shape"),
+                (lambda: shield.act(np.zeros((3, pool.action_dim))), redman.ArgumentError, "proposed: its shape"),
                 (lambda: shield.act(np.full((2, pool.action_dim), np.nan)), redman.ArgumentError, "not finite"),
-                (lambda: shield.act(mask=[1, 1, 1]), redman.ArgumentError, "mask: shape"),
+                (lambda: shield.act(mask=[1, 1, 1]), redman.ArgumentError, "mask: its shape"),
                 (lambda: shield.row(2), IndexError, "env"),
                 (lambda: shield.settings, AttributeError, "shield.options"),
                 (lambda: shield.bakups, AttributeError, "nearest is backups"),
