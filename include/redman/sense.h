@@ -143,8 +143,10 @@ RDM_API rdm_result rdm_agent_act_points(rdm_agent *a, const float *obs, const rd
 RDM_API rdm_result rdm_policy_act_points(const rdm_policy *p, const float *obs,
                                          const rdm_points *points, int32_t rows, const float *noise,
                                          float *action, void *scratch, size_t scratch_bytes);
-/* The same for a policy that reads points and has a memory (option history beside encoder): state
- * [rows][state_dim] as of rdm_policy_act_state (memory.h). */
+/* As rdm_policy_act_points, of obs [rows][obs_dim], noise [rows][action_dim] or NULL,
+ * action [rows][action_dim] and scratch [scratch_bytes], for a policy that also has a memory
+ * (option history beside encoder): state [rows][state_dim] is that of rdm_policy_act_state in
+ * memory.h; NULL only where state_dim is 0. */
 RDM_API rdm_result rdm_policy_act_points_state(const rdm_policy *p, const float *obs,
                                                const rdm_points *points, float *state,
                                                int32_t rows, const float *noise, float *action,

@@ -593,7 +593,6 @@ TEST(Memory, RefusalsSayWhatIsWrong) {
   refusal({{"memory", "gru:0"}}, "[1, 1024]");
   refusal({{"memory", "gru:4"}, {"history", "2"}}, "option history");
   refusal({{"memory", "gru:4"}, {"encoder", "8"}}, "encoder");
-  refusal({{"history", "2"}, {"encoder", "8"}}, "encoder");
   refusal({{"history_fields", "a"}}, "history above 1");
   refusal({{"history", "2"}, {"history_fields", "a"}, {"actor_obs", "b"}}, "actor_obs");
   refusal({{"history", "2"}, {"history_fields", "*"}, {"actor_obs", "b"}}, "actor_obs");

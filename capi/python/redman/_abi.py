@@ -5300,9 +5300,11 @@ FUNCTIONS: dict[str, Function] = {
         """),
     "rdm_policy_act_points_state": Function(
         c_int32, {"p": c_void_p, "obs": c_void_p, "points": POINTER(rdm_points), "state": c_void_p, "rows": c_int32, "noise": c_void_p, "action": c_void_p, "scratch": c_void_p, "scratch_bytes": c_size_t},
-        {"state": Rows("float32", ("rows", "state_dim"))}, True,
-        """The same for a policy that reads points and has a memory (option history beside encoder): state
-        [rows][state_dim] as of rdm_policy_act_state (memory.h).
+        {"obs": Rows("float32", ("rows", "obs_dim")), "state": Rows("float32", ("rows", "state_dim")), "noise": Rows("float32", ("rows", "action_dim")), "action": Rows("float32", ("rows", "action_dim"))}, True,
+        """As rdm_policy_act_points, of obs [rows][obs_dim], noise [rows][action_dim] or NULL,
+        action [rows][action_dim] and scratch [scratch_bytes], for a policy that also has a memory
+        (option history beside encoder): state [rows][state_dim] is that of rdm_policy_act_state in
+        memory.h; NULL only where state_dim is 0.
         """),
     "rdm_pretrain_config_init": Function(
         c_int32, {"how": POINTER(rdm_pretrain_config), "size": c_size_t},
