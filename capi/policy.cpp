@@ -397,7 +397,7 @@ rdm_result rdm_policy_get_info(const rdm_policy* p, rdm_policy_info* io) {
     info.control_dt = v.control_dt;
     info.noise_correlation = v.noise_correlation;
     info.layout_hash = v.layout_hash;
-    info.num_params = v.num_params() + v.eyes.num_params();
+    info.num_params = v.num_params() + v.eyes.num_params() + v.latent.num_params();
     info.task = v.task;
     info.activation = activation_name(v.actor.activation);
     info.num_points = v.eyes.points;

@@ -245,6 +245,27 @@ TEST(Points, WhatIsWrongIsSaidInOneLine) {
   EXPECT_STREQ(rdm_last_error(), "policy: it reads points; call rdm_policy_act_points");
 }
 
+TEST(Points, TheEncoderOfALatentIsAmongTheParameters) {
+  const rdm_field fields[] = {{"seen", "1", 0, 2}, {"dynamics.drawn", "1", 2, kObs - 2}};
+  rdm_agent_config c = redman::agent_config(kObs, kActions, kEnvs);
+  c.settings = "encoder=8,12\nencoder_points=32\nlatent=3\nlatent_hidden=5\nhidden=16\nactor_obs=*";
+  c.fields = fields, c.num_fields = 2;
+  const redman::Agent a(c);
+  const redman::Policy p(a.policy());
+  size_t count = 0;
+  for (const rdm_tensor& t : p.tensors()) {
+    const std::string name = t.name;
+    const bool of_layer =
+        name.find(".weight") != std::string::npos || name.find(".bias") != std::string::npos;
+    // the first layers have columns of zeros for entries of the row that they do not read
+    const int32_t read = name == "actor.0.weight"    ? 2 + 3 + 12
+                         : name == "latent.0.weight" ? kObs - 2
+                                                     : t.cols;
+    if (of_layer) count += static_cast<size_t>(t.rows) * static_cast<size_t>(read);
+  }
+  EXPECT_EQ(p.info().num_params, count);
+}
+
 // The agent keeps the states of its worlds; of a policy alone the caller does.
 TEST(Points, WithAHistoryThePolicyTakesItsState) {
   redman::Agent a = agent_of("encoder=8,12\nencoder_points=32\nencoder_classes=2\nhorizon=4\nhistory=3");
