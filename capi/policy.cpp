@@ -539,8 +539,7 @@ rdm_result rdm_policy_act_points(const rdm_policy* p, const float* obs, const rd
     const PointRows clouds = need_clouds(*p->policy, points, rows);
     need_no_state(*p->policy, "rdm_policy_act_points");
     need(action, "action");
-    act(p, obs, rows, noise, action, nullptr, scratch, scratch_bytes,
-        [&](void* memory) { p->policy->act(obs, rows, noise, action, memory, clouds); });
+    act_on(p, obs, clouds, nullptr, rows, noise, action, scratch, scratch_bytes);
   });
 }
 
