@@ -5,8 +5,8 @@
 
 #include "agents.hpp"
 #include "algos/core/networks.hpp"
-#include "base/bytes.hpp"
 #include "heap_count.hpp"
+#include "hostile_policy.hpp"
 #include "nn/policy.hpp"
 
 using namespace rdm;
@@ -328,25 +328,7 @@ TEST(Latent, NoNumberOfAFileLeadsOutOfIt) {
   for (const bool student : {false, true}) {
     auto a = setup_of(student).make();
     const auto good = policy_file(*a);
-    const unsigned char tag[] = {'L', 'A', 'T', 'N'};
-    const auto at = static_cast<size_t>(std::search(good.begin(), good.end(), tag, tag + 4) - good.begin());
-    uint64_t length = 0;
-    std::memcpy(&length, &good[at + 8], sizeof length);
-    int32_t refused = 0, taken = 0;
-    for (size_t word = 0; word < length; word += 4)
-      for (const int32_t value : {-1, 0, 1, 2, 3, 7, 65536, 1 << 30}) {
-        auto bytes = good;
-        unsigned char* payload = &bytes[at + 16];
-        std::memcpy(payload + word, &value, sizeof value);
-        const uint32_t sum = crc32(payload, length);
-        std::memcpy(&bytes[at + 4], &sum, sizeof sum);
-        try {
-          Policy::destroy(Policy::read(bytes.data(), bytes.size(), HostHooks{}));
-          ++taken;
-        } catch (const Error&) {
-          ++refused;
-        }
-      }
+    const auto [refused, taken] = try_numbers(good, "LATN");
     EXPECT_GT(refused, taken);
     EXPECT_GT(taken, 0);  // those that write what is there
   }

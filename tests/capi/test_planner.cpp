@@ -12,6 +12,7 @@
 #include "contract.hpp"
 #include "heap_count.hpp"
 #include "owned.hpp"
+#include "planners.hpp"
 
 namespace {
 
@@ -55,23 +56,6 @@ rdm_plan_info act(const Planner& planner, const Pool& pool, float* action) {
   EXPECT_EQ(rdm_planner_act(planner.get(), pool.get(), 0, action, &info), RDM_OK)
       << rdm_planner_error(planner.get());
   return info;
-}
-
-std::vector<float> plan_of(const Planner& planner) {
-  rdm_planner_spec s{};
-  s.struct_size = sizeof s;
-  EXPECT_EQ(rdm_planner_get_spec(planner.get(), &s), RDM_OK);
-  std::vector<float> plan(sz(s.horizon * s.action_dim));
-  EXPECT_EQ(rdm_planner_get_plan(planner.get(), plan.data()), RDM_OK);
-  return plan;
-}
-
-std::vector<unsigned char> state_of(const Planner& planner) {
-  size_t size = 0;
-  EXPECT_EQ(rdm_planner_write_state(planner.get(), nullptr, 0, &size), RDM_OK);
-  std::vector<unsigned char> bytes(size);
-  EXPECT_EQ(rdm_planner_write_state(planner.get(), bytes.data(), size, &size), RDM_OK);
-  return bytes;
 }
 
 struct Played {

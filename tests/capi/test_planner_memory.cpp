@@ -1,6 +1,7 @@
 // A planner whose proposals come from a policy that remembers: against rollouts of public calls alone, which copy the
 // world and the state; ends of episodes in each autoreset mode; saved states; what is cancelled or stopped; no heap.
 #include "heap_count.hpp"
+#include "planners.hpp"
 #include "remembering.hpp"
 
 namespace {
@@ -41,22 +42,6 @@ float act(const Planner& planner, const Pool& pool, rdm_plan_info* info = nullpt
   EXPECT_EQ(rdm_planner_act(planner.get(), pool.get(), 0, &action, info), RDM_OK)
       << rdm_planner_error(planner.get());
   return action;
-}
-
-Row plan_of(const Planner& planner) {
-  auto s = RDM_INIT(rdm_planner_spec);
-  EXPECT_EQ(rdm_planner_get_spec(planner.get(), &s), RDM_OK);
-  Row plan(static_cast<size_t>(s.horizon * s.action_dim));
-  EXPECT_EQ(rdm_planner_get_plan(planner.get(), plan.data()), RDM_OK);
-  return plan;
-}
-
-std::vector<unsigned char> state_of(const Planner& planner) {
-  size_t size = 0;
-  EXPECT_EQ(rdm_planner_write_state(planner.get(), nullptr, 0, &size), RDM_OK);
-  std::vector<unsigned char> bytes(size);
-  EXPECT_EQ(rdm_planner_write_state(planner.get(), bytes.data(), size, &size), RDM_OK);
-  return bytes;
 }
 
 // The policy's rollout in a copy of the only world, whose state before step `at` of its episode is given; it decides

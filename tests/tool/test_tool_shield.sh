@@ -43,12 +43,18 @@ check 'nothing was refused' less 0 "$(number training_interventions whole.json)"
 check 'nor evaluated under the shield' grep -q '"shielded":{' whole.json
 check 'progress.csv has no violations' grep -q 'Metrics/Violations.*Shield/Refused' whole/progress.csv
 check 'config.json has no shield' grep -q '"shield": "predict"' whole/config.json
+# broken_off RUN FLAGS...: a training that is interrupted after some epochs
+broken_off() {
+  run=$1
+  shift
+  "$tool" train "$@" --out "$run" > "$run.json" 2> /dev/null &
+  pid=$!
+  while kill -0 $pid 2> /dev/null && { [ ! -f "$run/progress.csv" ] || [ "$(wc -l < "$run/progress.csv")" -lt 6 ]; }; do sleep 0.02; done
+  kill -INT $pid
+  wait $pid
+}
 # shellcheck disable=SC2086
-"$tool" train $train --out part > part.json 2> /dev/null &
-pid=$!
-while kill -0 $pid 2> /dev/null && { [ ! -f part/progress.csv ] || [ "$(wc -l < part/progress.csv)" -lt 6 ]; }; do sleep 0.02; done
-kill -INT $pid
-wait $pid
+broken_off part $train
 check 'the run was over before it was broken off' less "$(number env_steps part.json)" 20000
 "$tool" train --resume part --json > rest.json 2> /dev/null || exit 1
 same whole part 'broken off and resumed'
@@ -67,11 +73,7 @@ remember="--task hand_over_safe_joint --envs 8 --steps 12000 --seed 2 --set memo
 check 'violations in training with a memory' test "$(number training_violating_steps gru.json)" = 0
 check 'nothing was refused with a memory' less 0 "$(number training_interventions gru.json)"
 # shellcheck disable=SC2086
-"$tool" train $remember --out stopped > stopped.json 2> /dev/null &
-pid=$!
-while kill -0 $pid 2> /dev/null && { [ ! -f stopped/progress.csv ] || [ "$(wc -l < stopped/progress.csv)" -lt 6 ]; }; do sleep 0.02; done
-kill -INT $pid
-wait $pid
+broken_off stopped $remember
 check 'the run with a memory was over before it was broken off' less "$(number env_steps stopped.json)" 12000
 "$tool" train --resume stopped --json > rest.json 2> /dev/null || exit 1
 same gru stopped 'with a memory broken off and resumed'
