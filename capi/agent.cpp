@@ -321,11 +321,16 @@ rdm_result rdm_agent_get_values(const rdm_agent* a, const float* obs, int32_t ro
     if (rows < 1 || rows > kMaxValueRows)
       fail(Code::kRange, "rows: %d is outside [1, %d]", rows, kMaxValueRows);
     const Agent& agent = *a->agent;
+    if (agent.history_dim() > 0)
+      fail(Code::kUnsupported,
+           "agent: its critics read its memory of the decisions before (option history), which this call "
+           "does not "
+           "take; give the agent to a planner, which keeps that memory");
     const auto n = static_cast<size_t>(rows);
     check_rows("obs", obs, nullptr, rows, static_cast<size_t>(agent.config().obs_dim));
     const HostScope scope(a->hooks);
     Vector<float> limited(n * static_cast<size_t>(agent.num_limited()));
-    agent.values(obs, rows, value, limited.data());
+    agent.values(obs, nullptr, rows, value, limited.data());
     if (!cost) return;
     std::fill_n(cost, n * RDM_MAX_COSTS, 0.0f);
     const auto count = static_cast<size_t>(agent.num_limited());

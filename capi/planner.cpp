@@ -17,9 +17,12 @@ constexpr size_t kFirstInfoSize = offsetof(rdm_plan_info, iterations);
 class Critics final : public PlanCritic {
  public:
   void open(const Agent* agent) { agent_ = agent; }
-  void values(const float* obs, int32_t rows, float* value, float* cost) override {
-    agent_->values(obs, rows, value, cost);
+  void values(const float* obs, const float* state, int32_t rows, float* value, float* cost) override {
+    agent_->values(obs, state, rows, value, cost);
   }
+  void see(const float* obs, int32_t rows, float* state) override { agent_->see(obs, rows, state); }
+  int32_t state_dim() const override { return agent_->history_dim(); }
+  int32_t repeat() const override { return agent_->action_repeat(); }
   int32_t num_costs() const override { return agent_->num_limited(); }
   int32_t column(int32_t i) const override { return agent_->limited_column(i); }
 
@@ -77,7 +80,7 @@ void use_critic(const rdm_agent* agent, const Pool& pool, rdm_planner* p, Planne
     fail(Code::kArgument, "obs_dim: the agent has %d, but the pool has %d", a.obs_dim, pool.obs_dim());
   if (a.cost_dim != pool.cost_dim())
     fail(Code::kArgument, "cost_dim: the agent has %d, but the pool has %d", a.cost_dim, pool.cost_dim());
-  agent->agent->values(nullptr, 0, nullptr, nullptr);  // refuses critics without a unit
+  agent->agent->values(nullptr, nullptr, 0, nullptr, nullptr);  // refuses critics without a unit
   p->critics.open(agent->agent);
   p->agent = agent;
   config->critic = &p->critics;

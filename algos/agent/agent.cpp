@@ -186,12 +186,6 @@ void Agent::forget(bool by_mean, const uint8_t* mask) {
   collector_.forget(by_mean, mask);
 }
 
-void Agent::need_no_memory(const char* call) const {
-  if (remembers())
-    fail(Code::kUnsupported, "%s: the agent has a memory (option %s), which this call does not support yet",
-         call, resolved_.gru.units ? "memory" : "history");
-}
-
 void Agent::need_on_policy(const char* call) const {
   if (resolved_.off_policy())
     fail(Code::kUnsupported, "%s: %s learns from a replay memory, and does not support this call", call,
@@ -221,18 +215,17 @@ void Agent::need_generation(const char* call, const Transition& t) {
          static_cast<unsigned long long>(t.generation), static_cast<unsigned long long>(sampler_));
 }
 
-void Agent::values(const float* obs, int32_t rows, float* value, float* cost) const {
+void Agent::values(const float* obs, const float* state, int32_t rows, float* value, float* cost) const {
   const SharedOptions& o = resolved_.shared;
   need_no_update("values");
   need_on_policy("values");
-  if (resolved_.history > 1) need_no_memory("values");
   if (o.normalize_reward || o.normalize_cost)
     fail(Code::kUnsupported, "agent: with option %s the values of its critics have no fixed unit",
          o.normalize_reward ? "normalize_reward" : "normalize_cost");
   if (num_limited() > 0 && !resolved_.values_costs)
     fail(Code::kUnsupported, "agent: %s has no critic of costs, and its critic of the reward has them in it",
          resolved_.row->info.name);
-  collector_.value_rows(obs, rows, value, cost);
+  collector_.value_rows(obs, state, rows, value, cost);
   const auto factor = static_cast<float>(o.reward_factor);
   for (int32_t i = 0; i < rows; ++i) value[i] /= factor;
 }

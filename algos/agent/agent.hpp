@@ -69,8 +69,6 @@ class Agent {
   bool remembers() const { return resolved_.remembers(); }
   // Error(kUnsupported) for a learner from a replay memory.
   void need_on_policy(const char* call) const;
-  // Error(kUnsupported) for an agent with a memory.
-  void need_no_memory(const char* call) const;
   // A decision that the policy of this generation took elsewhere, in the place of act and record. As act draws
   // nothing for it, the streams of noise stay where they are; all else is as if it had acted.
   void put(const float* obs, const float* action, const Transition& t);
@@ -85,9 +83,12 @@ class Agent {
   }
   int32_t state_dim() const { return static_cast<int32_t>(resolved_.state_dim()); }
   // As the critics see any rows, in the units of rewards and costs: value [rows] and cost
-  // [rows][num_limited()], of the cost columns limited_column(i). Error(kUnsupported) where those are scaled
-  // by what was seen.
-  void values(const float* obs, int32_t rows, float* value, float* cost) const;
+  // [rows][num_limited()], of the cost columns limited_column(i). With a history the decisions before are state
+  // [rows][history_dim()], which `see` moves on by a decision. Error(kUnsupported) where values are scaled by what was
+  // seen.
+  void values(const float* obs, const float* state, int32_t rows, float* value, float* cost) const;
+  void see(const float* obs, int32_t rows, float* state) const { collector_.see(obs, rows, state); }
+  int32_t history_dim() const { return resolved_.history_inputs(); }
   int32_t num_limited() const { return resolved_.num_limited; }
   int32_t limited_column(int32_t i) const { return resolved_.column[i]; }
   double discount() const { return resolved_.shared.discount; }

@@ -354,12 +354,27 @@ void Collector::foresee(const int32_t* env, const float* obs, int32_t rows, floa
   });
 }
 
-void Collector::value_rows(const float* obs, int32_t rows, float* value, float* cost_value) const {
+void Collector::see(const float* obs, int32_t rows, float* state) const {
+  const size_t dim = resolved_->obs_dim();
+  workers_->sweep(rows, share(rows), [&](const Workspace& workspace, int32_t first, int32_t n) {
+    const auto at = static_cast<size_t>(first);
+    float* const states = state + at * memory_.dim();
+    memory_.stack_on(normalized(obs + at * dim, n, workspace.obs), states, n, workspace.obs);
+    memory_.push_rows(states, workspace.obs, n);
+  });
+}
+
+void Collector::value_rows(const float* obs, const float* state, int32_t rows, float* value,
+                           float* cost_value) const {
   if (rows < 1) return;
   const size_t dim = resolved_->obs_dim(), costs = static_cast<size_t>(resolved_->num_limited);
   workers_->sweep(rows, share(rows), [&](const Workspace& workspace, int32_t first, int32_t n) {
     const auto at = static_cast<size_t>(first);
     const float* x = normalized(obs + at * dim, n, workspace.obs);
+    if (memory_.stacks()) {
+      memory_.stack_on(x, state + at * memory_.dim(), n, workspace.obs);
+      x = workspace.obs;
+    }
     const size_t critics = rollout_.critics;
     if (critics == 1) return values(workspace, x, n, value + at, cost_value + at * costs);
     values(workspace, x, n, workspace.out, workspace.dout);

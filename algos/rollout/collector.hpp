@@ -50,8 +50,10 @@ class Collector {
     noise_.peek(env, noise, offset);
     std::copy_n(memory_.state(env, false), memory_.dim(), state);
   }
-  // What the critics say of any rows obs [rows][obs_dim]: value [rows], cost_value [rows][num_limited].
-  void value_rows(const float* obs, int32_t rows, float* value, float* cost_value) const;
+  // What the critics say of any rows obs [rows][obs_dim]: value [rows], cost_value [rows][num_limited]. With a history
+  // state [rows][state_dim] is what was seen before; see puts the rows in front of it.
+  void value_rows(const float* obs, const float* state, int32_t rows, float* value, float* cost_value) const;
+  void see(const float* obs, int32_t rows, float* state) const;
   // Decisions still missing in this horizon.
   int32_t missing() const { return rollout_.horizon - rollout_.filled; }
   // Nothing is collected and no act waits for its record.

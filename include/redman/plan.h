@@ -99,9 +99,9 @@ RDM_API rdm_result rdm_actor_read_state(rdm_actor *actor, const void *bytes, siz
  *
  * The model is the world itself: rollouts know even the random numbers that it will draw. One
  * planner follows one world's episode: call rdm_planner_reset when another begins. The planner
- * keeps the state of a policy with a memory, from what the world shows in each call, so call it in
- * each step: the state goes along in the rollouts, and begins anew where an episode begins. One
- * thread at a time. The same seed and calls give the same bytes for any number of threads. A plan
+ * keeps the state of a policy with a memory and the history of an agent's critic, from what the
+ * world shows in each call, so call it in each step: both go along in the rollouts, and begin anew
+ * where an episode begins. One thread at a time. The same seed and calls give the same bytes for any number of threads. A plan
  * is an action for each of the next `horizon` steps of the pool. */
 typedef struct rdm_planner rdm_planner; /* handle */
 typedef struct rdm_planner_config { /* what a planner is made from */
@@ -208,7 +208,8 @@ RDM_API rdm_result rdm_planner_read_state(rdm_planner *planner, const void *byte
 /* What the agent's critics predict for obs [rows][obs_dim], any number of rows: to value [rows] the
  * discounted sum of future rewards, and to cost [rows][RDM_MAX_COSTS] that of each cost column
  * which the agent limits, 0 in others; cost may be NULL. UNSUPPORTED with options normalize_reward
- * or normalize_cost, under which critics have no unit. */
+ * or normalize_cost, under which critics have no unit, and with option history, as rows alone do
+ * not contain the decisions before; a planner supports that option. */
 RDM_API rdm_result rdm_agent_get_values(const rdm_agent *a, const float *obs, int32_t rows,
                                         float *value, float *cost);
 

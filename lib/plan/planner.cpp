@@ -111,6 +111,9 @@ void Planner::carve(Arena& arena) {
       int64_t{settings_.horizon} * action_dim_ > kMaxNumbers)
     fail(Code::kRange, "samples: %d times %d knots times %d actions is above %lld", settings_.samples,
          settings_.knots, action_dim_, static_cast<long long>(kMaxNumbers));
+  if (int64_t{settings_.samples} * critic_dim_ > kMaxNumbers)
+    fail(Code::kRange, "samples: %d times %d numbers of the critic's history is above %lld",
+         settings_.samples, critic_dim_, static_cast<long long>(kMaxNumbers));
   // plan [horizon][action_dim], width: knots of one sample's noise
   const size_t n = sz(settings_.samples), dim = sz(action_dim_), plan = sz(settings_.horizon) * dim,
                width = sz(settings_.knots) * dim;
@@ -133,8 +136,10 @@ void Planner::carve(Arena& arena) {
   courses_ = arena.make<Course>(n);
   standings_ = arena.make<Standing>(n);
   order_ = arena.make<int32_t>(n);
-  for (float** state : {&before_, &after_, &recalled_, &next_state_, &walked_})
+  for (float** state : {&before_, &after_, &recalled_, &next_state_})
     *state = arena.make<float>(sz(state_dim_));
+  walked_ = arena.make<float>(sz(policy_dim_));
+  critic_state_ = arena.make<float>(n * sz(critic_dim_));
 }
 
 Planner::Planner(const PlannerConfig& c)
@@ -146,7 +151,9 @@ Planner::Planner(const PlannerConfig& c)
       stream_(c.seed, 0, Purpose::kPolicyNoise) {
   const HostScope scope(hooks_);
   read_options(c);
-  if (policy_) state_dim_ = policy_->state_dim();
+  if (policy_) policy_dim_ = policy_->state_dim();
+  if (critic_) critic_dim_ = critic_->state_dim();
+  state_dim_ = policy_dim_ + critic_dim_;
   try {
     make_rollouts(c);
     Arena measure;
@@ -229,9 +236,9 @@ bool Planner::stopped() {
   return stop_ && stop_(user_, steps_) != 0;
 }
 
-// In the steps in which it would decide without the planner.
-bool Planner::decides(const Pool& pool, int32_t env, int32_t t) const {
-  const int32_t steps = std::max(1, policy_->repeat() / pool.repeat());
+// In the steps in which they would decide without the planner.
+bool Planner::decides(const Pool& pool, int32_t env, int32_t repeat, int32_t t) const {
+  const int32_t steps = std::max(1, repeat / pool.repeat());
   return (pool.episode_step(env) / pool.repeat() + t) % steps == 0 || (t == 0 && !planned_);
 }
 
@@ -242,9 +249,13 @@ void Planner::recall(const Pool& pool, int32_t env) {
   else
     std::copy_n(passed == Passed::kSteps ? after_ : before_, state_dim_, recalled_);
   std::copy_n(recalled_, state_dim_, next_state_);
-  if (!decides(pool, env, 0)) return;
-  policy_->act(pool.buffers().obs + sz(env) * sz(pool.obs_dim()), 1, next_state_, row_);
-  if (!sound_state(next_state_, state_dim_)) std::copy_n(recalled_, state_dim_, next_state_);
+  const float* obs = pool.buffers().obs + sz(env) * sz(pool.obs_dim());
+  if (policy_dim_ && decides(pool, env, policy_->repeat(), 0)) {
+    policy_->act(obs, 1, next_state_, row_);
+    if (!sound_state(next_state_, policy_dim_)) std::copy_n(recalled_, policy_dim_, next_state_);
+  }
+  if (critic_dim_ && decides(pool, env, critic_->repeat(), 0))
+    critic_->see(obs, 1, next_state_ + policy_dim_);
 }
 
 void Planner::remember(const Pool& pool, int32_t env) {
@@ -256,14 +267,14 @@ void Planner::remember(const Pool& pool, int32_t env) {
 bool Planner::propose(const Pool& pool, int32_t env) {
   rollouts_->copy(0, pool, env);
   const Buffers& b = rollouts_->buffers();
-  std::copy_n(recalled_, state_dim_, walked_);
+  std::copy_n(recalled_, policy_dim_, walked_);
   std::fill_n(alive_, settings_.samples, uint8_t{0});
   alive_[0] = 1;
   bool whole = true;
   for (int32_t t = 0; t < settings_.horizon; ++t) {
     float* action = centre_ + sz(t) * sz(action_dim_);
     const float* before = t > 0 ? action - action_dim_ : last_;
-    if (!alive_[0] || !decides(pool, env, t))
+    if (!alive_[0] || !decides(pool, env, policy_->repeat(), t))
       std::copy_n(before, action_dim_, action);
     else
       policy_->act(b.obs, 1, walked_, action);
@@ -319,10 +330,14 @@ bool Planner::roll_out(const Pool& pool, int32_t env) {
   const Buffers& b = rollouts_->buffers();
   std::fill_n(alive_, settings_.samples, uint8_t{1});
   std::fill_n(courses_, settings_.samples, Course{});
+  for (int32_t i = 0; i < settings_.samples; ++i)
+    std::copy_n(next_state_ + policy_dim_, critic_dim_, critic_state_ + sz(i) * sz(critic_dim_));
   double discount = 1;
   int32_t alive = settings_.samples;
   for (int32_t t = 0; t < settings_.horizon && alive > 0; ++t, discount *= settings_.discount) {
     if (stopped()) return false;
+    if (t > 0 && critic_dim_ && decides(pool, env, critic_->repeat(), t))
+      critic_->see(b.obs, settings_.samples, critic_state_);
     for (int32_t i = 0; i < settings_.samples; ++i)
       if (alive_[i]) sample_action(i, t, b.action + sz(i) * sz(action_dim_));
     rollouts_->step(alive_);
@@ -345,7 +360,7 @@ bool Planner::roll_out(const Pool& pool, int32_t env) {
 }
 
 void Planner::add_terminal(double discount) {
-  critic_->values(rollouts_->buffers().obs, settings_.samples, value_, cost_value_);
+  critic_->values(rollouts_->buffers().obs, critic_state_, settings_.samples, value_, cost_value_);
   const int32_t costs = critic_->num_costs();
   for (int32_t i = 0; i < settings_.samples; ++i) {
     if (!alive_[i]) continue;
@@ -456,7 +471,8 @@ uint64_t Planner::fingerprint() const {
   uint64_t hash = hash_bytes(lines.data(), lines.size() - 1);
   hash = hash_bytes(noise_std_, sz(action_dim_) * sizeof *noise_std_, hash);
   hash = hash_bytes(limit_, sz(cost_dim_) * sizeof *limit_, hash);
-  if (state_dim_) hash = hash_bytes(&state_dim_, sizeof state_dim_, hash);
+  for (const int32_t dim : {policy_dim_, critic_dim_})
+    if (dim) hash = hash_bytes(&dim, sizeof dim, hash);
   const uint64_t layout = layout_hash(rollouts_->task());
   return hash_bytes(&layout, sizeof layout, hash);
 }

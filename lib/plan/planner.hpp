@@ -11,10 +11,10 @@
 // The world is its own model: rollouts know what it will draw. The sum of a rollout ends where its episode
 // does; one that is still running at H adds the critic's value.
 //
-// A policy with a memory: its state goes along in its rollout, and the planner keeps the one of its world. As a state
-// hangs on the observations of the decisions so far alone, it is enough that a call sees each step of the world, as
-// calls do: in the steps in which the policy decides, it sees what the world shows, whether the call plans or follows
-// the plan. Another episode, another world and forget begin anew.
+// A policy with a memory, and a critic with a history: the states go along in their rollouts, and the planner keeps
+// those of its world. As a state hangs on the observations of the decisions so far alone, it is enough that a call sees
+// each step of the world, as calls do: in the steps in which policy or critic decide, they see what the world shows,
+// whether the call plans or follows the plan. Another episode, another world and forget begin anew.
 //
 // A call ends early, between two steps of its rollouts, by cancel(): an error, and nothing has changed; or by
 // config.stop: what the finished iterations made of the plan is the plan, as if there were no more of them.
@@ -51,8 +51,13 @@ struct PlanOptions {
 // How good a state is; a view of what somebody else owns.
 class PlanCritic {
  public:
-  // value [rows] and cost [rows][num_costs()] of obs [rows][obs_dim].
-  virtual void values(const float* obs, int32_t rows, float* value, float* cost) = 0;
+  // value [rows] and cost [rows][num_costs()] of obs [rows][obs_dim], before whose decisions the states are state
+  // [rows][state_dim()].
+  virtual void values(const float* obs, const float* state, int32_t rows, float* value, float* cost) = 0;
+  // The states after decisions that saw obs; as MeanPolicy's.
+  virtual void see(const float* obs, int32_t rows, float* state) = 0;
+  virtual int32_t state_dim() const = 0;
+  virtual int32_t repeat() const = 0;
   virtual int32_t num_costs() const = 0;
   virtual int32_t column(int32_t i) const = 0;
 
@@ -127,7 +132,8 @@ class Planner {
   bool stopped();                                                // asked between two steps; Error(kCancelled)
   void recall(const Pool& pool, int32_t env);                    // recalled_ and next_state_ of this call
   void remember(const Pool& pool, int32_t env);
-  bool decides(const Pool& pool, int32_t env, int32_t t) const;  // the policy, in step t of the plan
+  // In step t of the plan, who holds an action for so many control steps.
+  bool decides(const Pool& pool, int32_t env, int32_t repeat, int32_t t) const;
   // The policy's rollout from the state of `env`: its actions become the centre. False: stopped on the way.
   bool propose(const Pool& pool, int32_t env);
   void draw_noise();
@@ -167,12 +173,13 @@ class Planner {
   Standing* standings_ = nullptr;                                // [samples]
   int32_t* order_ = nullptr;                                     // [samples]
 
-  // What the policy remembers of the world before and behind the step of the last call, the same of this call until it
-  // can no more fail, and of its rollout; [state_dim].
-  int32_t state_dim_ = 0;
+  // What the policy remembers of the world, and behind it the critic: before and behind the step of the last call, and
+  // the same of this call until it can no more fail; [state_dim].
+  int32_t policy_dim_ = 0, critic_dim_ = 0, state_dim_ = 0;
   Moment seen_;
   float *before_ = nullptr, *after_ = nullptr, *recalled_ = nullptr, *next_state_ = nullptr;
-  float* walked_ = nullptr;
+  float* walked_ = nullptr;        // [policy_dim] in the policy's rollout
+  float* critic_state_ = nullptr;  // [samples][critic_dim] in those of the samples
 
   Stream stream_;
   bool planned_ = false, given_ = false;  // there is a plan; its first row was given, so it is shifted next

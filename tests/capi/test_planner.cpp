@@ -892,7 +892,7 @@ TEST(PlannerMemory, NoHeapAfterTheFirstCallAndAllOfItGoesBack) {
   CountingHost host;
   {
     const Pool pool = pool_of("hand_over_safe_finger", "", 1, 1, 2);
-    const Agent agent = agent_of(pool, "hidden=16,16");
+    const Agent agent = agent_of(pool, "hidden=16,16\nhistory=3");
     const Policy policy = policy_of(agent);
     rdm_planner_config c = config_of(pool, "method=mppi\nsamples=12\nhorizon=4\niterations=2");
     c.host = &host.hooks;

@@ -1,5 +1,6 @@
-// A planner whose proposals come from a policy that remembers: against rollouts of public calls alone, which copy the
-// world and the state; ends of episodes in each autoreset mode; saved states; what is cancelled or stopped; no heap.
+// A planner whose proposals come from a policy that remembers, or whose critic has a history: against rollouts of public
+// calls alone, which copy the world and the state; ends of episodes in each autoreset mode; saved states; what is
+// cancelled or stopped; no heap.
 #include "heap_count.hpp"
 #include "planners.hpp"
 #include "remembering.hpp"
@@ -190,6 +191,110 @@ TEST(PlansByMemory, OfACallThatIsCancelledIsAsIfThereWereNone) {
     b.action[0] = action;
     ASSERT_EQ(rdm_pool_step(pool.get()), RDM_OK);
   }
+}
+
+// A critic of the same network as an actor, so that the actor's policy gives by public calls what the critic says.
+struct Valued {
+  Agent drawn, critic;
+  Remembering actor;
+
+  Valued(const Pool& pool, const std::string& settings)
+      : drawn(drawn_agent(pool, settings, 3, 0.2f)), actor(drawn) {
+    rdm_agent_config c;
+    EXPECT_EQ(rdm_agent_config_init(&c, sizeof c), RDM_OK);
+    EXPECT_EQ(rdm_agent_config_for_pool(&c, pool.get()), RDM_OK);
+    c.algo = "ppo_lag";
+    c.settings = settings.c_str();
+    critic = Agent(make_agent(c));
+    rdm_tensor t;
+    int32_t copied = 0;
+    for (int32_t i = 0; rdm_agent_tensor_at(critic.get(), i, &t) == RDM_OK; ++i) {
+      const std::string name = t.name, net = name.substr(0, name.find('.'));
+      if (net != "reward_critic" && net != "cost_critic") continue;
+      const std::string of = "actor" + name.substr(net.size());
+      std::vector<float> values(static_cast<size_t>(t.rows) * static_cast<size_t>(t.cols));
+      EXPECT_EQ(rdm_agent_get_tensor(drawn.get(), of.c_str(), values.data(), values.size()), RDM_OK) << of;
+      EXPECT_EQ(rdm_agent_set_tensor(critic.get(), t.name, values.data(), values.size()), RDM_OK) << name;
+      ++copied;
+    }
+    EXPECT_EQ(copied, 8);  // weights and biases of two layers, twice
+  }
+};
+
+// The plan's sums in a copy of the only world, and what the critic says of its end: the state before step `at` of the
+// episode is given, and the critic's agent decides each `hold`-th step.
+struct Sums {
+  double ret = 0, cost = 0, end = 0;
+};
+Sums sums_of(Valued& v, const Pool& pool, Row state, int32_t at, int32_t hold, const Row& plan) {
+  const Pool copy = pool_of();
+  EXPECT_EQ(rdm_pool_copy(copy.get(), 0, pool.get(), 0), RDM_OK);
+  const rdm_buffers c = buffers_of(copy.get());
+  Sums sums;
+  for (size_t t = 0; t < plan.size(); ++t) {
+    if ((at + static_cast<int32_t>(t)) % hold == 0) v.actor.act(c.obs, state);
+    c.action[0] = plan[t];
+    EXPECT_EQ(rdm_pool_step(copy.get()), RDM_OK);
+    sums.ret += static_cast<double>(c.reward[0]);
+    sums.cost += static_cast<double>(c.cost[0]);
+    if (c.terminated[0] || c.truncated[0]) return sums;
+  }
+  sums.end = static_cast<double>(v.actor.act(c.obs, state)[0]);
+  return sums;
+}
+
+TEST(ValuesByHistory, AreThoseOfACriticThatSawTheEpisode) {
+  for (const int32_t hold : {1, 3})
+    for (const int32_t autoreset : {RDM_AUTORESET_SAME_STEP, RDM_AUTORESET_NEXT_STEP, RDM_AUTORESET_OFF}) {
+      SCOPED_TRACE(::testing::Message() << "held " << hold << ", autoreset " << autoreset);
+      const Pool pool = pool_of(autoreset);
+      Valued v(pool, std::string(kHistory) + "\naction_repeat=" + std::to_string(hold));
+      rdm_planner_config pc;
+      ASSERT_EQ(rdm_planner_config_init(&pc, sizeof pc), RDM_OK);
+      pc.pool = pool.get();
+      pc.settings = "samples=3\nhorizon=2\ncosts=ignore\nterminal_cost=true\ndiscount=1\nnoise=0";
+      pc.agent = v.critic.get();
+      rdm_planner* made = nullptr;
+      ASSERT_EQ(rdm_planner_create(&made, &pc), RDM_OK) << rdm_last_error();
+      const Planner planner(made);
+      const rdm_buffers b = buffers_of(pool.get());
+      rdm::Stream stream(5, 0, rdm::Purpose::kTest);
+      Row state = v.actor.fresh();
+      int32_t at = 0, moved = 0, costly = 0;
+      for (int step = 0; step < 36; ++step, ++at) {
+        Row plan(2);
+        for (float& a : plan) a = 0.3f * static_cast<float>(stream.signed_unit());
+        ASSERT_EQ(rdm_planner_set_plan(planner.get(), plan.data()), RDM_OK);
+        const auto saved = state_of(planner);
+        const Sums wanted = sums_of(v, pool, state, at, hold, plan),
+                   blind = sums_of(v, pool, v.actor.fresh(), at, hold, plan);
+        if (at % hold == 0) v.actor.act(b.obs, state);
+        auto info = RDM_INIT(rdm_plan_info);
+        b.action[0] = act(planner, pool, &info);
+        EXPECT_NEAR(info.ret, wanted.ret + wanted.end, 2e-6) << step;
+        EXPECT_NEAR(info.cost[0], wanted.cost + std::max(wanted.end, 0.0), 2e-6) << step;
+        moved += std::abs(blind.end - wanted.end) > 1e-3;
+        costly += wanted.end > 0;
+        // from the bytes before the call another planner does the same
+        ASSERT_EQ(rdm_planner_create(&made, &pc), RDM_OK) << rdm_last_error();
+        const Planner resumed(made);
+        ASSERT_EQ(rdm_planner_read_state(resumed.get(), saved.data(), saved.size()), RDM_OK)
+            << rdm_planner_error(resumed.get());
+        act(resumed, pool);
+        EXPECT_EQ(state_of(resumed), state_of(planner)) << step;
+        ASSERT_EQ(rdm_pool_step(pool.get()), RDM_OK);
+        if (!b.terminated[0] && !b.truncated[0]) continue;
+        state = v.actor.fresh();
+        at = -1;
+        if (autoreset == RDM_AUTORESET_OFF) {
+          ASSERT_EQ(rdm_pool_reset(pool.get(), nullptr, nullptr), RDM_OK);
+        } else if (autoreset == RDM_AUTORESET_NEXT_STEP) {
+          ASSERT_EQ(rdm_pool_step(pool.get()), RDM_OK);
+        }
+      }
+      EXPECT_GT(moved, 8);  // values hang on the history
+      EXPECT_GT(costly, 3);
+    }
 }
 
 TEST(PlansByMemory, TakesNothingFromTheHeap) {
