@@ -345,10 +345,11 @@ bool Learner::advance_measure(bool whole) {
   return !term_;
 }
 
-Job Learner::begin_weigh(const Batch& batch, int32_t group) {
+Job Learner::begin_weigh(const Batch& batch, int32_t group, double most) {
   refresh_log_std();
   sweep_ = Sweep(batch);
   weighed_ = static_cast<size_t>(group);
+  most_weight_ = most;
   return Job::of<&Learner::advance_weigh>(this);
 }
 
@@ -362,7 +363,8 @@ bool Learner::advance_weigh(bool) {
     for (size_t i = 0; i < static_cast<size_t>(c.rows); ++i) {
       const auto at = static_cast<size_t>(c.order[i]);
       const auto ratio =
-          static_cast<float>(part_ratio(r, at, weighed_, chunk.mean_of(i), chunk.log_std_of(i)));
+          static_cast<float>(std::clamp(part_ratio(r, at, weighed_, chunk.mean_of(i), chunk.log_std_of(i)),
+                                        1 / most_weight_, most_weight_));
       r.gain[at] *= ratio, r.linear[at] *= ratio;
       for (size_t k = 0; k < costs; ++k) r.cost_advantage[at * costs + k] *= ratio;
     }

@@ -104,8 +104,9 @@ class Learner {
     return measured_;
   }
   // Multiplies the advantages of the listed rows, those that the policy climbs and those of costs, by the probability
-  // ratio of one group's actions: then others of the team learn from what they are worth beside its new policy.
-  Job begin_weigh(const Batch& batch, int32_t group);
+  // ratio of one group's actions: then others of the team learn from what they are worth beside its new policy. A ratio
+  // is held within [1 / most, most].
+  Job begin_weigh(const Batch& batch, int32_t group, double most);
   // What the actor gives for each of the listed rows, to row `order[i]` of out [samples][outputs of the actor].
   Job begin_outputs(const Batch& batch, float* out);
   double kl(const Batch& batch) { return measure(batch).kl; }
@@ -159,6 +160,7 @@ class Learner {
   float clip_ = 0;
   bool with_term_ = false;
   size_t weighed_ = 0;        // group
+  double most_weight_ = 0;    // of its ratios
   float* outputs_ = nullptr;  // of begin_outputs
   Job term_;                  // behind the rows: the imitation term's
   BatchSums sums_;

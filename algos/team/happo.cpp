@@ -15,6 +15,8 @@
 namespace rdm {
 namespace {
 
+constexpr double kAnyRatio = 1e9;
+
 struct HappoOptions : PpoOptions, GroupOptions {};
 constexpr auto kHappoRows = option_rows<HappoOptions>(kPpoRows, kGroupRows);
 
@@ -28,7 +30,7 @@ class Happo : public Ppo {
   Job begin_turn(int32_t turn) override {
     if (turn == 0) turns_.draw();
     nets().focus = turns_.group(turn);
-    return turn == 0 ? Job() : learner().begin_weigh(whole_batch(), turns_.group(turn - 1));
+    return turn == 0 ? Job() : learner().begin_weigh(whole_batch(), turns_.group(turn - 1), kAnyRatio);
   }
   void visit_state(StateIo& io) override {
     Ppo::visit_state(io);

@@ -7,6 +7,9 @@
 // (trust_region/cpo_problem.hpp), on its own network alone: at i's turn its constraint value is J_c - d and what the
 // groups before have added, E[M A_c].
 //
+// With option ratio_max each factor of M is held within [1/x, x], as importance weights are truncated elsewhere: the
+// few rows whose ratios are far out no longer decide the surrogate, which is then biased by what they lose.
+//
 // Departures: one multiplier problem, exact, where the authors solve it with a first-order bound on delta as well;
 // the line search measures the group's own KL. With one group it is CPO, to the byte.
 #include "algos/algo_registry.hpp"
@@ -17,8 +20,15 @@
 namespace rdm {
 namespace {
 
-struct MacpoOptions : CpoOptions, GroupOptions {};
-constexpr auto kMacpoRows = option_rows<MacpoOptions>(kCpoRows, kGroupRows);
+struct MacpoOptions : CpoOptions, GroupOptions {
+  double ratio_max;
+};
+constexpr auto kMacpoRows = option_rows<MacpoOptions>(
+    kCpoRows, kGroupRows,
+    row<&MacpoOptions::ratio_max>(number_option(
+        "ratio_max", 1e9, 1, 1e9,
+        "each group's ratio is held within [1/x, x] before it weighs the rows of the groups behind it",
+        true)));
 
 class Macpo : public Cpo {
  public:
@@ -28,6 +38,10 @@ class Macpo : public Cpo {
   void opened() override {
     Cpo::opened();
     turns_.open(config().seed, nets());
+  }
+  void read_live() override {
+    Cpo::read_live();
+    ratio_max_ = kMacpoRows.read(options()).ratio_max;
   }
   void begin_step() override {
     turn_ = 0;
@@ -47,7 +61,7 @@ class Macpo : public Cpo {
           return {};
         }
         stage_ = Stage::kWeighed;
-        return learner().begin_weigh(whole_batch(), turns_.group(turn_ - 1));
+        return learner().begin_weigh(whole_batch(), turns_.group(turn_ - 1), ratio_max_);
       case Stage::kWeighed:
         nets().focus = turns_.group(turn_);
         stage_ = Stage::kMeasured;
@@ -82,6 +96,7 @@ class Macpo : public Cpo {
   Stage stage_ = Stage::kStep;
   int32_t turn_ = 0;
   double kl_ = 0;  // of all groups so far
+  double ratio_max_ = 0;
 };
 
 }  // namespace

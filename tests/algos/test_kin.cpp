@@ -63,7 +63,7 @@ TEST(Kin, RcpoHasOneCritic) {
   EXPECT_FALSE(has_tensor(*a, "cost_critic.0.weight"));
   const float obs = 1;
   float value = 0, cost = 0;
-  EXPECT_EQ(thrown([&] { a->values(&obs, 1, &value, &cost); }).code, Code::kUnsupported);
+  EXPECT_EQ(thrown([&] { a->values(&obs, nullptr, 1, &value, &cost); }).code, Code::kUnsupported);
 }
 
 // A multiplier that stays where it was is a fixed price: the same numbers as PPO on a reward that has it in it.

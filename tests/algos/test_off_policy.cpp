@@ -78,7 +78,7 @@ TEST(OffPolicy, RefusesWhatItDoesNotSupport) {
   AgentSetup s("sac", 3, 2, 4);
   const AgentPtr a = s.make();
   std::vector<float> obs(12), value(4);
-  const Thrown values = thrown([&] { a->values(obs.data(), 4, value.data(), nullptr); });
+  const Thrown values = thrown([&] { a->values(obs.data(), nullptr, 4, value.data(), nullptr); });
   EXPECT_EQ(values.code, Code::kUnsupported);
   EXPECT_NE(values.text.find("sac learns from a replay memory"), std::string::npos) << values.text;
   EXPECT_EQ(thrown([&] { a->clone({}, {}); }).code, Code::kUnsupported);

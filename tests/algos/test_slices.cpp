@@ -256,7 +256,7 @@ TEST(Slices, WhatHasToWait) {
       [&] {
         a->set_option({"learning_rate", nullptr, 1e-3});
       },
-      [&] { a->values(world.obs(), 1, value, value); },
+      [&] { a->values(world.obs(), nullptr, 1, value, value); },
       [&] { a->set_recording({}, 0); },
       [&] { a->clone({}, {}); },
   };

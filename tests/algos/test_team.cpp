@@ -480,6 +480,50 @@ TEST(Team, FisherProductsOfAGroupThroughItsMemoryAreThoseOfTheKl) {
   }
 }
 
+// What a group's new policy makes of its actions weighs the rows of the others, within ratio_max.
+TEST(Team, ARatioWeighsRowsWithinItsBound) {
+  AgentSetup s = team("macpo", kPair, 16);
+  s.with("last_layer_scale", "1").with("init_std", "0.3");
+  Bench b(std::move(s));
+  Rollout& r = b.rollout;
+  const Batch batch(b.order.data(), b.resolved.samples);
+  b.learner.begin_outputs(batch, r.mean).finish();  // what acted
+  for (size_t j = 0; j < kActions; ++j) r.log_std[j] = b.nets.log_std()[j];
+  Stream stream(3, 0, Purpose::kTest);
+  const size_t rows = size_of(b.resolved.samples);
+  stream.normals(r.action, b.resolved.samples * kActions);
+  for (size_t i = 0; i < rows * kActions; ++i) r.action[i] = r.mean[i] + 0.3f * r.action[i];
+  for (size_t i = 0; i < rows; ++i) keep_log_prob(r, i, r.mean + i * kActions, r.log_std);
+  const ActorGroup& first = b.nets.group[0];
+  float* const params = b.nets.params + b.nets.std_size + first.offset;
+  for (size_t j = 0; j < first.net().num_params(); ++j)
+    params[j] += 0.15f * static_cast<float>(stream.signed_unit());
+  const auto weights = [&](double most) {
+    std::fill_n(r.gain, rows, 1.0f);
+    std::fill_n(r.linear, rows, -2.0f);
+    b.learner.begin_weigh(batch, 0, most).finish();
+    std::vector<float> out(r.gain, r.gain + rows);
+    for (size_t i = 0; i < rows; ++i) EXPECT_EQ(r.linear[i], -2 * out[i]);
+    return out;
+  };
+  const std::vector<float> any = weights(1e9), held = weights(1.5);
+  int32_t above = 0, below = 0, between = 0;
+  for (size_t i = 0; i < rows; ++i) {
+    EXPECT_FLOAT_EQ(held[i], std::clamp(any[i], 1 / 1.5f, 1.5f));
+    above += any[i] > 1.5f, below += any[i] < 1 / 1.5f;
+    between += any[i] != 1 && any[i] > 1 / 1.5f && any[i] < 1.5f;
+  }
+  EXPECT_GT(above, 5);
+  EXPECT_GT(below, 5);
+  EXPECT_GT(between, 5);
+  const std::vector<float> other = [&] {  // the second group has not moved
+    std::fill_n(r.gain, rows, 1.0f);
+    b.learner.begin_weigh(batch, 1, 1e9).finish();
+    return std::vector<float>(r.gain, r.gain + rows);
+  }();
+  for (const float w : other) EXPECT_NEAR(w, 1, 1e-5f);
+}
+
 // The critics of a group see its fields alone.
 TEST(Team, CriticsOfAGroupDoNotSeeTheOthersFields) {
   AgentSetup s = team("ippo_lag", kPair, 8);
