@@ -2,7 +2,8 @@
 // four sums, each in the order of x, as the library adds them; missing rows are zeros.
 //
 // With int8 weights a row is q s, q in [-127, 127], s = max|w| / 127, and x is rounded to integers of at most
-// 2^31 / (127 in): the sums are exact in 32 bits, the same on every machine.
+// 2^31 / (127 in): the sums are exact in 32 bits, the same on every machine and in any order. So they stand as ARM's DSP
+// instructions take them, [out / 4][ceil(in / 4)][4 rows][4], of a row's four the numbers 0, 2, 1, 3.
 #include "network/c_source.hpp"
 
 #include <algorithm>
@@ -31,6 +32,11 @@ struct Layer {
   std::vector<float> bias;    // [out]
   std::vector<int8_t> small;  // the weights in 8 bits, empty without
   std::vector<float> scale;   // [out] of them
+
+  size_t small_at(size_t o, size_t k) const {
+    constexpr size_t kOrder[] = {0, 2, 1, 3};
+    return ((o / 4 * ((in + 3) / 4) + k / 4) * 4 + o % 4) * 4 + kOrder[k % 4];
+  }
 };
 
 // Denormals are 0 to the library.
@@ -39,7 +45,7 @@ float plain(float v) {
 }
 
 void quantise(Layer& layer) {
-  layer.small.resize(layer.weight.size());
+  layer.small.assign(layer.out * ((layer.in + 3) / 4 * 4), 0);
   layer.scale.resize(layer.out);
   for (size_t o = 0; o < layer.out; ++o) {
     const auto at = [&](size_t k) { return (o / 4 * layer.in + k) * 4 + o % 4; };
@@ -47,7 +53,8 @@ void quantise(Layer& layer) {
     for (size_t k = 0; k < layer.in; ++k) largest = std::max(largest, std::abs(layer.weight[at(k)]));
     layer.scale[o] = plain(largest / 127);
     for (size_t k = 0; k < layer.in && layer.scale[o] > 0; ++k)
-      layer.small[at(k)] = static_cast<int8_t>(std::lround(layer.weight[at(k)] / layer.scale[o]));
+      layer.small[layer.small_at(o, k)] =
+          static_cast<int8_t>(std::lround(layer.weight[at(k)] / layer.scale[o]));
   }
 }
 
@@ -115,7 +122,7 @@ void run_layer(const Layer& layer, std::vector<float>& x) {
   std::vector<float> y(layer.out);
   for (size_t o = 0; o < layer.out; ++o) {
     int32_t sum = 0;
-    for (size_t k = 0; k < layer.in; ++k) sum += layer.small[(o / 4 * layer.in + k) * 4 + o % 4] * q[k];
+    for (size_t k = 0; k < layer.in; ++k) sum += layer.small[layer.small_at(o, k)] * q[k];
     y[o] = std::fma(static_cast<float>(sum), unit * layer.scale[o], layer.bias[o]);
   }
   x = y;
@@ -647,7 +654,7 @@ size_t widest_of(const Layers& layers) {
       std::max(buffer_sizes(layers.actor).widest, layers.eyes.empty() ? 0 : buffer_sizes(layers.eyes).widest);
   for (const Layer& layer : layers.memory) widest = std::max(widest, layer.in);
   for (const Layer& layer : layers.latent) widest = std::max(widest, layer.in);
-  return widest;
+  return (widest + 3) / 4 * 4;
 }
 size_t stack_bytes(const Network& network, const Layers& layers, bool int8) {
   const Sizes s = buffer_sizes(shared_rows(network, layers));

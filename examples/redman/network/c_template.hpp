@@ -152,8 +152,30 @@ static void NAME_layer(const float *weight, const float *bias, const float *x, i
 )";
 
 inline constexpr const char* kLayerInt8 = R"(
-/* y [out] = W x + bias; weight [out / 4][in][4], each row times its scale. x is rounded to integers so small that
- * 32 bits hold the sums. */
+/* sum + four numbers of a row times four of x. Bytes 0 and 2 of a word, and then 1 and 3, are what one instruction of
+ * an ARM with DSP spreads into 16 bits each, hence the order of the bytes. */
+#if defined(__GNUC__) && defined(__ARM_FEATURE_SIMD32) && !defined(__ARM_BIG_ENDIAN)
+#include <arm_acle.h>
+#define NAME_DSP
+#endif
+#if defined(__GNUC__)
+__attribute__((always_inline))
+#endif
+static inline int32_t NAME_four(int32_t sum, const int8_t *w, const int16_t *q) {
+#ifdef NAME_DSP
+  uint32_t four;
+  int32_t pair[2];
+  __builtin_memcpy(&four, w, sizeof four);
+  __builtin_memcpy(pair, q, sizeof pair);
+  sum = __smlad(__sxtb16((int32_t)four), pair[0], sum);
+  return __smlad(__sxtb16((int32_t)(four >> 8)), pair[1], sum);
+#else
+  return sum + w[0] * (int32_t)q[0] + w[2] * (int32_t)q[1] + w[1] * (int32_t)q[2] + w[3] * (int32_t)q[3];
+#endif
+}
+
+/* y [out] = W x + bias; weight [out / 4][in / 4, rounded up][4 rows][4], of a row's four the numbers 0, 2, 1, 3, each
+ * row times its scale. x is rounded to integers so small that 32 bits hold the sums. */
 static void NAME_layer(const int8_t *weight, const float *scale, const float *bias, const float *x, int in, int out,
                        float *y) {
   int16_t q[WIDEST];
@@ -171,13 +193,14 @@ static void NAME_layer(const int8_t *weight, const float *scale, const float *bi
     const float v = NAME_fma(x[k], per, x[k] < 0.0f ? -0.5f : 0.5f);
     q[k] = (int16_t)(v > limit ? limit : v > -limit ? v : -limit);
   }
+  for (; k % 4 != 0; ++k) q[k] = 0;
   for (i = 0; i < out; i += 4) {
     int32_t a = 0, b = 0, c = 0, d = 0;
-    for (k = 0; k < in; ++k, weight += 4) {
-      a += (int32_t)weight[0] * q[k];
-      b += (int32_t)weight[1] * q[k];
-      c += (int32_t)weight[2] * q[k];
-      d += (int32_t)weight[3] * q[k];
+    for (k = 0; k < in; k += 4, weight += 16) {
+      a = NAME_four(a, weight, q + k);
+      b = NAME_four(b, weight + 4, q + k);
+      c = NAME_four(c, weight + 8, q + k);
+      d = NAME_four(d, weight + 12, q + k);
     }
     y[i] = NAME_fma((float)a, unit * scale[i], bias[i]);
     y[i + 1] = NAME_fma((float)b, unit * scale[i + 1], bias[i + 1]);
