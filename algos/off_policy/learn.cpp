@@ -2,6 +2,7 @@
 //
 // No episode finishes here, so J_c is what the algorithm expects of its policy (judge_policy).
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "algos/off_policy/replay_agent.hpp"
@@ -42,6 +43,13 @@ double ReplayAgent::sum_of_values(int32_t i) const {
                    : r.shared.discounted_limit ? h.discounts
                                                : h.length;
   return n / h.values;
+}
+
+void ReplayAgent::judge_cost(int32_t i, double sum, JudgedCosts& out) const {
+  out.known[i] = out.fresh[i] = !std::isnan(sum);
+  out.cost[i] = sum;
+  out.limit[i] = resolved().limit[i];
+  out.steps[i] = feed_.length() * resolved().shared.action_repeat;
 }
 
 // The weights move, and the actor's mean is taken, at whole multiples, so it does not matter how many steps a call takes.

@@ -173,8 +173,7 @@ void OffPolicy::end_gradient_step() {
 }
 
 void OffPolicy::judge_policy(JudgedCosts& out) {
-  const ResolvedAgentConfig& r = resolved();
-  out.count = r.num_limited;
+  out.count = resolved().num_limited;
   if (out.count == 0) return;
   const Vector<int32_t>& starts = feed().starts();
   const auto all = static_cast<int64_t>(starts.size());
@@ -193,10 +192,7 @@ void OffPolicy::judge_policy(JudgedCosts& out) {
     double sum = 0;
     for (int32_t i = 0; i < rows; ++i)
       sum += static_cast<double>(std::max({critics_.out(2 * k + 2)[i], critics_.out(2 * k + 3)[i], 0.0f}));
-    out.known[k] = out.fresh[k] = true;
-    out.cost[k] = sum / rows * sum_of_values(k);
-    out.limit[k] = r.limit[k];
-    out.steps[k] = feed().length() * r.shared.action_repeat;
+    judge_cost(k, sum / rows * sum_of_values(k), out);
   }
 }
 

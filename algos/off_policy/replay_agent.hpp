@@ -113,6 +113,8 @@ class ReplayAgent : public Agent {
   Horizons horizons() const;
   // How many times the mean value of the first observations the sum that limit i is on is.
   double sum_of_values(int32_t i) const;
+  // What judge_policy says of limited cost i: its sum over an episode, kNothing where that is not known.
+  void judge_cost(int32_t i, double sum, JudgedCosts& out) const;
   // Limit i as a value of a first observation.
   double limit_in_values(int32_t i) const { return resolved().limit[i] / sum_of_values(i); }
   const Feed& feed() const { return feed_; }  // of learn

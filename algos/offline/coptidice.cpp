@@ -238,14 +238,9 @@ class COptiDice : public ReplayAgent {
 
   // What the rows cost by their weights, over the steps since weights of costs moved last.
   void judge_policy(JudgedCosts& out) override {
-    const ResolvedAgentConfig& r = resolved();
-    out.count = r.num_limited;
-    for (int32_t k = 0; k < out.count; ++k) {
-      out.known[k] = out.fresh[k] = judged_ > 0;
-      out.cost[k] = judged_ > 0 ? paid_[k] / judged_ * horizons().values * sum_of_values(k) : kNothing;
-      out.limit[k] = r.limit[k];
-      out.steps[k] = feed().length() * r.shared.action_repeat;
-    }
+    out.count = resolved().num_limited;
+    for (int32_t k = 0; k < out.count; ++k)
+      judge_cost(k, judged_ > 0 ? paid_[k] / judged_ * horizons().values * sum_of_values(k) : kNothing, out);
   }
 
  private:
