@@ -101,8 +101,8 @@ RDM_API rdm_result rdm_actor_read_state(rdm_actor *actor, const void *bytes, siz
  * planner follows one world's episode: call rdm_planner_reset when another begins. The planner
  * keeps the state of a policy with a memory and the history of an agent's critic, from what the
  * world shows in each call, so call it in each step: both go along in the rollouts, and begin anew
- * where an episode begins. One thread at a time. The same seed and calls give the same bytes for any number of threads. A plan
- * is an action for each of the next `horizon` steps of the pool. */
+ * where an episode begins. One thread at a time. The same seed and calls give the same bytes for
+ * any number of threads. A plan is an action for each of the next `horizon` steps of the pool. */
 typedef struct rdm_planner rdm_planner; /* handle */
 typedef struct rdm_planner_config { /* what a planner is made from */
   uint32_t struct_size;      /* bytes, set by rdm_planner_config_init */

@@ -5564,7 +5564,8 @@ FUNCTIONS: dict[str, Function] = {
         """What the agent's critics predict for obs [rows][obs_dim], any number of rows: to value [rows] the
         discounted sum of future rewards, and to cost [rows][RDM_MAX_COSTS] that of each cost column
         which the agent limits, 0 in others; cost may be NULL. UNSUPPORTED with options normalize_reward
-        or normalize_cost, under which critics have no unit.
+        or normalize_cost, under which critics have no unit, and with option history, as rows alone do
+        not contain the decisions before; a planner supports that option.
         """),
     "rdm_pool_guard_at": Function(
         c_int32, {"pool": c_void_p, "i": c_int32, "io": POINTER(rdm_guard), "normal": c_void_p},

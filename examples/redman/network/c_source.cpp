@@ -23,6 +23,7 @@ constexpr size_t kErrorRows = 1000, kTestRows = 8;
 constexpr size_t kErrorPoints = 200000;  // that int8 is measured on, at most: fewer rows of large clouds
 constexpr int32_t kTestPoints = 24;      // of a cloud of the self-test
 constexpr float kTestSpread = 2, kTestFar = 30;  // the last row's
+constexpr size_t kSpare = 3;                     // of a row in 8 bits, which is taken by fours
 constexpr double kFloatTolerance = 4e-6;         // another order of rounding, wherever the file runs
 
 struct Layer {
@@ -654,7 +655,7 @@ size_t widest_of(const Layers& layers) {
       std::max(buffer_sizes(layers.actor).widest, layers.eyes.empty() ? 0 : buffer_sizes(layers.eyes).widest);
   for (const Layer& layer : layers.memory) widest = std::max(widest, layer.in);
   for (const Layer& layer : layers.latent) widest = std::max(widest, layer.in);
-  return (widest + 3) / 4 * 4;
+  return widest;
 }
 size_t stack_bytes(const Network& network, const Layers& layers, bool int8) {
   const Sizes s = buffer_sizes(shared_rows(network, layers));
@@ -666,7 +667,7 @@ size_t stack_bytes(const Network& network, const Layers& layers, bool int8) {
   }
   floats += static_cast<size_t>(network.memory.size);
   for (const Layer& layer : layers.memory) floats += layer.out;
-  return floats * sizeof(float) + (int8 ? widest_of(layers) * sizeof(int16_t) : 0);
+  return floats * sizeof(float) + (int8 ? (widest_of(layers) + kSpare) * sizeof(int16_t) : 0);
 }
 
 }  // namespace
@@ -774,7 +775,7 @@ CSource c_source(const redman::Policy& policy, const Network& network, const std
            {"OBS_DIM", std::to_string(network.obs_dim)},
            {"ACTION_DIM", std::to_string(network.action_dim)},
            {"REPEAT", std::to_string(info.action_repeat)},
-           {"WIDEST", std::to_string(widest_of(layers))},
+           {"WIDEST", std::to_string(widest_of(layers) + kSpare)},
            {"CLIP", clip ? literal(static_cast<double>(clip->values[0])) : ""},
            {"ROWS", std::to_string(kTestRows)},
            {"TOLERANCE", literal(tolerance)},

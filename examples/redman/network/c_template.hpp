@@ -193,7 +193,7 @@ static void NAME_layer(const int8_t *weight, const float *scale, const float *bi
     const float v = NAME_fma(x[k], per, x[k] < 0.0f ? -0.5f : 0.5f);
     q[k] = (int16_t)(v > limit ? limit : v > -limit ? v : -limit);
   }
-  for (; k % 4 != 0; ++k) q[k] = 0;
+  q[in] = q[in + 1] = q[in + 2] = 0; /* up to three beside the last */
   for (i = 0; i < out; i += 4) {
     int32_t a = 0, b = 0, c = 0, d = 0;
     for (k = 0; k < in; k += 4, weight += 16) {
