@@ -1,25 +1,55 @@
 #!/usr/bin/env bash
 # Draws the pictures of the manual: of each task moments of an episode of the bundled policy, seed 0; strips of demonstrations and of
-# bundled policies, the README's among them; of each algorithm the learning curves of the runs of examples/paper_tables.sh (PARTS="fig7 command"), where they are there.
+# bundled policies, the README's among them; learning curves of algorithms. Those of a team and of learners from a replay memory are of
+# short runs, which this script trains where they are not there (3 seeds each, some minutes of a core); the others of the runs of
+# examples/paper_tables.sh (PARTS="fig7 command") and examples/leaderboard.sh, where they are there.
 #   bash examples/manual/pictures.sh [NAME...]     default: all
-# Environment: REDMAN (the tool), OUT (examples/pictures), RUNS (runs/paper)
+# Environment: REDMAN (the tool), OUT (examples/pictures), RUNS (runs/paper), LEADERBOARD (runs/leaderboard), CURVES (runs/curves)
 set -eu
 shopt -s nullglob
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 redman=${REDMAN:-$root/build/release/bin/redman} out=${OUT:-$root/examples/pictures} runs=${RUNS:-$root/runs/paper}
+leaderboard=${LEADERBOARD:-$root/runs/leaderboard} curves=${CURVES:-$root/runs/curves}
 mkdir -p "$out/tasks" "$out/algorithms"
 wanted=" $* "
 wanted() { [ "$wanted" = "  " ] || case $wanted in *" $1 "*) ;; *) return 1 ;; esac }
 
+# curve ALGO RUNS...
+curve() {
+  local algo=$1
+  shift
+  [ $# = 0 ] || "$redman" plot "$@" --out "$out/algorithms/$algo.svg" > /dev/null
+}
+# short TASK ALGO STEPS OPTIONS...: three runs of it in $curves.
+short() {
+  local task=$1 algo=$2 steps=$3 seed run
+  shift 3
+  for seed in 0 1 2; do
+    run=$curves/$task.$algo.$seed
+    [ -s "$run/done" ] && continue
+    "$redman" train --task "$task" --algo "$algo" --seed "$seed" --steps "$steps" --threads 1 --no-tensorboard --overwrite "$@" --out "$run" > /dev/null
+    echo "$steps" > "$run/done"
+  done
+}
 for algo in $("$redman" algos | awk 'NR > 1 { print $1 }'); do
-  [ -e "$runs/grasp.$algo.0" ] || continue
   wanted "$algo" || continue
-  drawn=("$runs/grasp.$algo".?)
   case $algo in
-    ppo | trpo) drawn+=("$runs/jenga.$algo".?) ;;
-    *) drawn+=("$runs/grasp.ppo".? "$runs/hand_over_safe_finger.$algo.command".?) ;; # PPO: without limits
+    mappo | mappo_lag | happo | macpo | ippo | ippo_lag)
+      short matrix_game "$algo" 100000
+      short hand_over_safe_finger "$algo" 1000000
+      curve "$algo" "$curves"/{matrix_game,hand_over_safe_finger}."$algo".?
+      ;;
+    td3 | td3_lag | td3_pid | sac | sac_lag | sac_pid)
+      short lqr_line "$algo" 50000 --set hidden=32,32 --set horizon=8
+      curve "$algo" "$curves/lqr_line.$algo".?
+      ;;
+    pdo | rcpo | cup | crpo) curve "$algo" "$leaderboard"/{ball_run/ball_run,car_run/car_run}/{"$algo",ppo_lag}/seed-???/ ;;
+    ppo | trpo) curve "$algo" "$runs"/{grasp,jenga}."$algo".? ;;
+    *) # with PPO, which is without limits
+      drawn=("$runs/grasp.$algo".?)
+      [ ${#drawn[@]} = 0 ] || curve "$algo" "${drawn[@]}" "$runs/grasp.ppo".? "$runs/hand_over_safe_finger.$algo.command".?
+      ;;
   esac
-  "$redman" plot "${drawn[@]}" --out "$out/algorithms/$algo.svg" > /dev/null
 done
 
 # task, camera, moments, size, first and last control step

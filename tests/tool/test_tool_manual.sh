@@ -1,5 +1,6 @@
 #!/bin/sh
-# test_tool_manual.sh TOOL: the command lines of README, the manual and the folders' pages name subcommands and flags that the tool has.
+# test_tool_manual.sh TOOL: the command lines of README, the manual and the folders' pages name subcommands and flags that the tool has;
+# each algorithm has a page of the same parts.
 set -u
 tool=$(realpath "$1")
 cd "$(dirname "$0")/../.." || exit 1
@@ -37,5 +38,15 @@ while IFS='|' read -r page command flags; do
     grep -qE -- "(^|[ ,])$flag([ ,=]|\$)" "$help" || { echo "$page: redman $command has no $flag"; failed=1; }
   done
 done < "$helps/lines"
+# Learners from data alone have no curve over control steps.
+for algo in $("$tool" algos | awk 'NR > 1 { print $1 }'); do
+  page=examples/manual/algorithms/$algo.md
+  for part in Update Source 'Differences from the source' Options; do
+    grep -q "^## $part\$" "$page" || { echo "$page: it has no section $part"; failed=1; }
+  done
+  case $algo in td3_bc_lag | cpq | bcq_lag | coptidice) continue ;; esac
+  grep -q "^!\[.*(../../pictures/algorithms/$algo.svg)" "$page" && [ -s "examples/pictures/algorithms/$algo.svg" ] ||
+    { echo "$page: it has no learning curves"; failed=1; }
+done
 [ $commands -ge 50 ] || { echo "only $commands command lines were found"; failed=1; }
 exit $failed
