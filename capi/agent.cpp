@@ -324,8 +324,7 @@ rdm_result rdm_agent_get_values(const rdm_agent* a, const float* obs, int32_t ro
     if (agent.history_dim() > 0)
       fail(Code::kUnsupported,
            "agent: its critics read its memory of the decisions before (option history), which this call "
-           "does not "
-           "take; give the agent to a planner, which keeps that memory");
+           "does not take; give the agent to a planner, which keeps that memory");
     const auto n = static_cast<size_t>(rows);
     check_rows("obs", obs, nullptr, rows, static_cast<size_t>(agent.config().obs_dim));
     const HostScope scope(a->hooks);

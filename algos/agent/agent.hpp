@@ -66,7 +66,6 @@ class Agent {
   void record(const Transition& t);
   // What it remembers of environments, as Collector::forget.
   void forget(bool by_mean, const uint8_t* mask);
-  bool remembers() const { return resolved_.remembers(); }
   // Error(kUnsupported) for a learner from a replay memory.
   void need_on_policy(const char* call) const;
   // A decision that the policy of this generation took elsewhere, in the place of act and record. As act draws

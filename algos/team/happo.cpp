@@ -15,8 +15,6 @@
 namespace rdm {
 namespace {
 
-constexpr double kAnyRatio = 1e9;
-
 struct HappoOptions : PpoOptions, GroupOptions {};
 constexpr auto kHappoRows = option_rows<HappoOptions>(kPpoRows, kGroupRows);
 

@@ -26,7 +26,7 @@ struct MacpoOptions : CpoOptions, GroupOptions {
 constexpr auto kMacpoRows = option_rows<MacpoOptions>(
     kCpoRows, kGroupRows,
     row<&MacpoOptions::ratio_max>(number_option(
-        "ratio_max", 1e9, 1, 1e9,
+        "ratio_max", kAnyRatio, 1, kAnyRatio,
         "each group's ratio is held within [1/x, x] before it weighs the rows of the groups behind it",
         true)));
 

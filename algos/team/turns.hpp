@@ -9,6 +9,8 @@
 
 namespace rdm {
 
+inline constexpr double kAnyRatio = 1e9;  // as a bound of the ratios that weigh rows: none
+
 class Turns {
  public:
   void open(uint64_t seed, const Networks& nets) {
