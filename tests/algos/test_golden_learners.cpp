@@ -14,7 +14,9 @@
 
 #include "base/cpu.hpp"
 #include "base/hash.hpp"
+#include "has_option.hpp"
 #include "nn/kernels.hpp"
+#include "written.hpp"
 
 namespace {
 
@@ -28,16 +30,6 @@ rdm_pool* make_pool(const char* task, int32_t envs) {
   EXPECT_EQ(rdm_pool_create(&p, &c), RDM_OK) << rdm_last_error();
   EXPECT_EQ(rdm_pool_reset(p, nullptr, nullptr), RDM_OK);
   return p;
-}
-
-bool has_option(const char* algo, const char* key) {
-  int32_t index = 0;
-  EXPECT_EQ(rdm_algo_find(algo, &index), RDM_OK);
-  rdm_option_spec spec{};
-  spec.struct_size = sizeof spec;
-  for (int32_t i = 0; rdm_algo_option_at(index, i, &spec) == RDM_OK; ++i)
-    if (std::string(spec.key) == key) return true;
-  return false;
 }
 
 uint64_t state_after_three_epochs(const char* algo, const char* task) {
@@ -54,10 +46,8 @@ uint64_t state_after_three_epochs(const char* algo, const char* task) {
   EXPECT_EQ(rdm_agent_create(&a, &c), RDM_OK) << rdm_last_error();
   for (int epoch = 0; epoch < 3; ++epoch)
     EXPECT_EQ(rdm_agent_rollout(a, p, nullptr), RDM_OK) << rdm_last_error();
-  size_t size = 0;
-  EXPECT_EQ(rdm_agent_write_state(a, nullptr, 0, &size), RDM_OK);
-  std::vector<unsigned char> bytes(size);
-  EXPECT_EQ(rdm_agent_write_state(a, bytes.data(), size, &size), RDM_OK);
+  const auto bytes = written_bytes(
+      [&](void* out, size_t n, size_t* size) { return rdm_agent_write_state(a, out, n, size); });
   rdm_agent_destroy(a);
   rdm_pool_destroy(p);
   return rdm::hash_bytes(bytes.data(), bytes.size());

@@ -8,6 +8,7 @@
 #include "heap_count.hpp"
 #include "policies.hpp"
 #include "shields.hpp"
+#include "written.hpp"
 
 namespace {
 
@@ -110,11 +111,10 @@ TEST(ContractMemory, AnActorKeepsItAndClearsItWhereAnEpisodeEnds) {
       for (size_t e = 0; e < 2; ++e)
         if (ends[e]) std::fill_n(state.begin() + static_cast<long>(e * dim), dim, 0.0f);
       if (t != 8) continue;
-      size_t size = 0;
-      ASSERT_EQ(rdm_actor_write_state(actor.get(), nullptr, 0, &size), RDM_OK);
-      Bytes bytes(size);
-      ASSERT_EQ(rdm_actor_write_state(actor.get(), bytes.data(), size, &size), RDM_OK);
-      ASSERT_EQ(rdm_actor_read_state(resumed.get(), bytes.data(), size), RDM_OK)
+      const Bytes bytes = written_bytes([&](void* out, size_t n, size_t* size) {
+        return rdm_actor_write_state(actor.get(), out, n, size);
+      });
+      ASSERT_EQ(rdm_actor_read_state(resumed.get(), bytes.data(), bytes.size()), RDM_OK)
           << rdm_actor_error(resumed.get());
     }
   }

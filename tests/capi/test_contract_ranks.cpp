@@ -4,6 +4,7 @@
 
 #include "contract.hpp"
 #include "ranks.hpp"
+#include "written.hpp"
 
 using rdm::test::each_rank;
 using rdm::test::Meeting;
@@ -130,11 +131,9 @@ TEST(ContractRanks, WorldsHaveTheirPlaceAmongAll) {
   EXPECT_EQ(hash_of(mine, 0), hash_of(all, 2));
   EXPECT_EQ(hash_of(mine, 1), hash_of(all, 3));
   ASSERT_EQ(rdm_pool_step(all), RDM_OK);
-  size_t size = 0;
-  ASSERT_EQ(rdm_pool_write_state(all, -1, nullptr, 0, &size), RDM_OK);
-  Bytes bytes(size);
-  ASSERT_EQ(rdm_pool_write_state(all, -1, bytes.data(), size, &size), RDM_OK);
-  ASSERT_EQ(rdm_pool_read_state(mine, -1, bytes.data(), size), RDM_OK) << rdm_last_error();
+  const Bytes bytes = written_bytes(
+      [&](void* out, size_t n, size_t* size) { return rdm_pool_write_state(all, -1, out, n, size); });
+  ASSERT_EQ(rdm_pool_read_state(mine, -1, bytes.data(), bytes.size()), RDM_OK) << rdm_last_error();
   EXPECT_EQ(hash_of(mine, 0), hash_of(all, 2));
   EXPECT_EQ(hash_of(mine, 1), hash_of(all, 3));
   EXPECT_EQ(rdm_pool_set_rank(mine, 1, 3), RDM_ERROR_STATE);

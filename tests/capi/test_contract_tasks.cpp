@@ -5,6 +5,7 @@
 
 #include "contract.hpp"
 #include "heap_count.hpp"
+#include "written.hpp"
 
 namespace {
 
@@ -104,12 +105,10 @@ TEST_P(ContractTasks, ABadActionEndsItsEpisodeAlone) {
 TEST_P(ContractTasks, ASavedStateGoesOnWithTheSameBytes) {
   rdm_pool *p = started(config()), *other = started(config());
   play(p, kSteps);
-  size_t n = 0;
-  ASSERT_EQ(rdm_pool_write_state(p, -1, nullptr, 0, &n), RDM_OK);
-  std::vector<unsigned char> state(n);
-  ASSERT_EQ(rdm_pool_write_state(p, -1, state.data(), n, &n), RDM_OK);
+  const auto state = written_bytes(
+      [&](void* out, size_t n, size_t* size) { return rdm_pool_write_state(p, -1, out, n, size); });
   play(other, 7);
-  ASSERT_EQ(rdm_pool_read_state(other, -1, state.data(), n), RDM_OK) << rdm_pool_error(other);
+  ASSERT_EQ(rdm_pool_read_state(other, -1, state.data(), state.size()), RDM_OK) << rdm_pool_error(other);
   const rdm_spec s = spec_of(p);
   const rdm_buffers a = buffers_of(p), b = buffers_of(other);
   EXPECT_EQ(std::memcmp(a.obs, b.obs, sizeof(float) * 3 * static_cast<size_t>(s.obs_dim)), 0);

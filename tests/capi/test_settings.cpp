@@ -2,6 +2,7 @@
 #include <sstream>
 
 #include "contract.hpp"
+#include "written.hpp"
 
 namespace {
 
@@ -19,12 +20,8 @@ std::string settings_of(const rdm_pool* p) {
 }
 
 std::string settings_of(const rdm_agent* a) {
-  size_t size = 0;
-  EXPECT_EQ(rdm_agent_get_settings(a, nullptr, 0, &size), RDM_OK);
-  std::string text(size + 1, '#');
-  EXPECT_EQ(rdm_agent_get_settings(a, text.data(), text.size(), &size), RDM_OK);
-  text.resize(size);
-  return text;
+  return written_text(
+      [&](char* out, size_t n, size_t* size) { return rdm_agent_get_settings(a, out, n, size); });
 }
 
 std::string value_of(const std::string& settings, const std::string& key) {
@@ -57,11 +54,9 @@ void expect_same_again(const char* task, const char* settings) {
   ASSERT_NE(again, nullptr);
   EXPECT_EQ(settings_of(again), whole);
   EXPECT_EQ(hash_after_steps(again), hash_after_steps(p));
-  size_t size = 0;
-  ASSERT_EQ(rdm_pool_write_state(p, -1, nullptr, 0, &size), RDM_OK);
-  std::vector<unsigned char> state(size);
-  ASSERT_EQ(rdm_pool_write_state(p, -1, state.data(), size, &size), RDM_OK);
-  EXPECT_EQ(rdm_pool_read_state(again, -1, state.data(), size), RDM_OK) << rdm_last_error();
+  const auto state = written_bytes(
+      [&](void* out, size_t n, size_t* size) { return rdm_pool_write_state(p, -1, out, n, size); });
+  EXPECT_EQ(rdm_pool_read_state(again, -1, state.data(), state.size()), RDM_OK) << rdm_last_error();
   rdm_pool_destroy(again);
   rdm_pool_destroy(p);
 }

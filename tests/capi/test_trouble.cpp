@@ -4,6 +4,7 @@
 
 #include "called_task.hpp"
 #include "task_pool.hpp"
+#include "written.hpp"
 
 namespace rdm::test {
 namespace {
@@ -154,11 +155,9 @@ TEST(Trouble, AFirstObservationThatIsNotFiniteIsFlaggedAndMended) {
   Pool p("nan_reset");
   p.expect_status(RDM_STATUS_DIVERGED, RDM_STATUS_DIVERGED);
   for (size_t e = 0; e < kWorlds; ++e) EXPECT_EQ(p.b.obs[e], 0);
-  size_t size = 0;
-  EXPECT_EQ(rdm_pool_write_state(p.pool, -1, nullptr, 0, &size), RDM_OK);
-  std::vector<unsigned char> state(size);
-  EXPECT_EQ(rdm_pool_write_state(p.pool, -1, state.data(), size, &size), RDM_OK);
-  EXPECT_EQ(rdm_pool_read_state(p.pool, -1, state.data(), size), RDM_OK) << rdm_pool_error(p.pool);
+  const auto state = written_bytes(
+      [&](void* out, size_t n, size_t* size) { return rdm_pool_write_state(p.pool, -1, out, n, size); });
+  EXPECT_EQ(rdm_pool_read_state(p.pool, -1, state.data(), state.size()), RDM_OK) << rdm_pool_error(p.pool);
   p.step();
   p.expect_status(0, RDM_STATUS_DIVERGED);
   EXPECT_EQ(p.stats().diverged, kWorlds);

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "has_option.hpp"
 #include "own_task.hpp"
 #include "records.hpp"
 
@@ -208,21 +209,6 @@ inline void require_refusal(rdm_result r) {
   HARD_REQUIRE(*rdm_last_error() && good_text(rdm_last_error()), "text of code %d: %s", r, rdm_last_error());
 }
 
-inline bool has_option(const std::string& algo, const char* key) {
-  for (int32_t i = 0; i < rdm_algo_count(); ++i) {
-    rdm_algo a{};
-    a.struct_size = sizeof a;
-    HARD_REQUIRE(rdm_algo_at(i, &a) == RDM_OK, "%s", rdm_last_error());
-    for (int32_t k = 0; algo == a.name && k < a.num_options; ++k) {
-      rdm_option_spec o{};
-      o.struct_size = sizeof o;
-      HARD_REQUIRE(rdm_algo_option_at(i, k, &o) == RDM_OK, "%s", rdm_last_error());
-      if (std::strcmp(o.key, key) == 0) return true;
-    }
-  }
-  return false;
-}
-
 // A small agent for rows of 3 observations, 2 actions and 2 costs: 4 rows, 8 decisions a horizon.
 struct AgentOf {
   static constexpr int32_t kObs = 3, kActions = 2, kCosts = 2, kRows = 4, kHorizon = 8;
@@ -257,7 +243,7 @@ struct AgentOf {
     config.num_envs = kRows;
     config.num_threads = threads;
     config.cost_limits = limits;
-    const bool replays = has_option(algo, "replay_rows");
+    const bool replays = has_option(algo.c_str(), "replay_rows");
     config.options = replays ? replay : usual;
     config.num_options = replays ? 5 : 4;
     config.host = host;

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "imports.hpp"
+#include "written.hpp"
 
 namespace {
 
@@ -23,12 +24,8 @@ Import from_file(const std::string& name, const rdm_import_config* o = nullptr) 
 }
 
 std::string written(const rdm_robot_def& def) {
-  size_t size = 0;
-  EXPECT_EQ(rdm_import_write_robot(&def, nullptr, 0, &size), RDM_OK) << rdm_import_error();
-  std::string text(size + 1, '\0');
-  EXPECT_EQ(rdm_import_write_robot(&def, text.data(), text.size(), &size), RDM_OK) << rdm_import_error();
-  text.pop_back();
-  return text;
+  return written_text(
+      [&](char* out, size_t n, size_t* size) { return rdm_import_write_robot(&def, out, n, size); });
 }
 std::string read(const std::string& name) {
   std::ifstream in(kData + name, std::ios::binary);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "comma_locale.hpp"
+#include "written.hpp"
 
 namespace {
 
@@ -35,11 +36,8 @@ void add_settings(std::vector<std::string>& out) {
       out.emplace_back(rdm_last_error());
       continue;
     }
-    size_t size = 0;
-    EXPECT_EQ(rdm_pool_get_settings(pool, nullptr, 0, &size), RDM_OK) << rdm_last_error();
-    std::string text(size + 1, '\0');
-    EXPECT_EQ(rdm_pool_get_settings(pool, text.data(), text.size(), &size), RDM_OK);
-    out.push_back(text);
+    out.push_back(written_text(
+        [&](char* text, size_t n, size_t* size) { return rdm_pool_get_settings(pool, text, n, size); }));
     rdm_pool_destroy(pool);
   }
 }
@@ -53,11 +51,8 @@ void add_import(rdm_import* import, std::vector<std::string>& out) {
   rdm_robot_def def;
   rdm_robot_def_init(&def, sizeof def);
   EXPECT_EQ(rdm_import_get_robot_def(import, &def), RDM_OK);
-  size_t size = 0;
-  EXPECT_EQ(rdm_import_write_robot(&def, nullptr, 0, &size), RDM_OK);
-  std::string text(size + 1, '\0');
-  EXPECT_EQ(rdm_import_write_robot(&def, text.data(), text.size(), &size), RDM_OK);
-  out.push_back(text);
+  out.push_back(written_text(
+      [&](char* text, size_t n, size_t* size) { return rdm_import_write_robot(&def, text, n, size); }));
   rdm_import_destroy(import);
 }
 
@@ -114,11 +109,8 @@ void add_objects(std::vector<std::string>& out) {
   rdm_object_def def;
   rdm_object_def_init(&def, sizeof def);
   EXPECT_EQ(rdm_import_get_object_def(import, &def), RDM_OK);
-  size_t size = 0;
-  EXPECT_EQ(rdm_import_write_object(&def, nullptr, 0, &size), RDM_OK);
-  std::string written(size + 1, '\0');
-  EXPECT_EQ(rdm_import_write_object(&def, written.data(), written.size(), &size), RDM_OK);
-  out.push_back(written);
+  out.push_back(written_text(
+      [&](char* text, size_t n, size_t* size) { return rdm_import_write_object(&def, text, n, size); }));
   int32_t index = -1;
   EXPECT_EQ(rdm_object_create(&index, &def), RDM_OK) << rdm_last_error();
   if (rdm_object_info_at(index, &object) == RDM_OK) out.emplace_back(object.shape);

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "written.hpp"
+
 namespace {
 
 struct Import {
@@ -28,12 +30,8 @@ rdm_import* from_text(const std::string& text) {
   return i;
 }
 std::string written(const rdm_object_def& def) {
-  size_t size = 0;
-  EXPECT_EQ(rdm_import_write_object(&def, nullptr, 0, &size), RDM_OK) << rdm_import_error();
-  std::string text(size + 1, '\0');
-  EXPECT_EQ(rdm_import_write_object(&def, text.data(), text.size(), &size), RDM_OK) << rdm_import_error();
-  text.pop_back();
-  return text;
+  return written_text(
+      [&](char* out, size_t n, size_t* size) { return rdm_import_write_object(&def, out, n, size); });
 }
 
 TEST(ObjectText, EveryObjectReadsBackToTheBit) {

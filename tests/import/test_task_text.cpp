@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "env/options/simulation_rows.hpp"
+#include "written.hpp"
 
 extern "C" rdm_result redman_plugin(void);  // of examples/07_own_task.c
 
@@ -574,13 +575,12 @@ TEST(TaskText, FilesThatShipKeepWhatATaskPromises) {
     for (int i = 0; i < 15; ++i) pool.random_step();
     hashes[threads] = pool.hash();
     if (threads == 2) {  // saved, gone on, and put back
-      size_t size = 0;
-      ASSERT_EQ(rdm_pool_write_state(pool.pool, -1, nullptr, 0, &size), RDM_OK);
-      std::vector<char> bytes(size);
-      ASSERT_EQ(rdm_pool_write_state(pool.pool, -1, bytes.data(), size, &size), RDM_OK);
+      const auto bytes = written_bytes([&](void* out, size_t n, size_t* size) {
+        return rdm_pool_write_state(pool.pool, -1, out, n, size);
+      });
       for (int i = 0; i < 10; ++i) pool.step(0.5f);
       const uint64_t later = pool.hash();
-      ASSERT_EQ(rdm_pool_read_state(pool.pool, -1, bytes.data(), size), RDM_OK) << rdm_last_error();
+      ASSERT_EQ(rdm_pool_read_state(pool.pool, -1, bytes.data(), bytes.size()), RDM_OK) << rdm_last_error();
       EXPECT_EQ(pool.hash(), hashes[2]);
       for (int i = 0; i < 10; ++i) pool.step(0.5f);
       EXPECT_EQ(pool.hash(), later);

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "contract.hpp"
+#include "written.hpp"
 
 namespace {
 
@@ -35,10 +36,8 @@ struct Loaded {
       EXPECT_EQ(rdm_agent_record(a, &t), RDM_OK) << rdm_agent_error(a);
     }
     EXPECT_EQ(rdm_agent_update(a, obs.data(), nullptr), RDM_OK) << rdm_agent_error(a);
-    size_t size = 0;
-    EXPECT_EQ(rdm_agent_write_policy(a, nullptr, 0, &size), RDM_OK);
-    std::vector<unsigned char> bytes(size);
-    EXPECT_EQ(rdm_agent_write_policy(a, bytes.data(), size, &size), RDM_OK);
+    const auto bytes = written_bytes(
+        [&](void* out, size_t n, size_t* size) { return rdm_agent_write_policy(a, out, n, size); });
     rdm_agent_destroy(a);
     EXPECT_EQ(rdm_policy_read(&policy, bytes.data(), bytes.size()), RDM_OK) << rdm_last_error();
     rdm_tensor tensor;

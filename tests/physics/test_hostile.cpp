@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "hostile.hpp"
+#include "written.hpp"
 
 namespace {
 
@@ -15,11 +16,8 @@ constexpr const char* kTasks[] = {"hand_over_safe_finger", "hand_over_safe_joint
 class Hostile : public testing::TestWithParam<const char*> {};
 
 std::vector<unsigned char> state_of(const rdm_pool* p, int32_t env) {
-  size_t n = 0;
-  EXPECT_EQ(rdm_pool_write_state(p, env, nullptr, 0, &n), RDM_OK);
-  std::vector<unsigned char> out(n);
-  EXPECT_EQ(rdm_pool_write_state(p, env, out.data(), n, &n), RDM_OK);
-  return out;
+  return written_bytes(
+      [&](void* out, size_t n, size_t* size) { return rdm_pool_write_state(p, env, out, n, size); });
 }
 
 rdm_pool* make_pool(const char* engine, int32_t envs) {

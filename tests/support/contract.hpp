@@ -13,6 +13,9 @@
 #include <string>
 #include <vector>
 
+#include "has_option.hpp"
+#include "written.hpp"
+
 // Hooks that count live bytes and calls, and refuse from the call number `refuse_at` on.
 struct CountingHost {
   size_t live = 0, calls = 0, peak = 0;
@@ -122,19 +125,6 @@ inline constexpr rdm_option kSmallReplayOptions[] = {{"hidden", "8,8", 0},
                                                      {"batch_rows", nullptr, 8},
                                                      {"start_steps", nullptr, 4}};
 
-inline bool has_option(int32_t algo, const char* key) {
-  rdm_algo info{};
-  info.struct_size = sizeof info;
-  EXPECT_EQ(rdm_algo_at(algo, &info), RDM_OK);
-  for (int32_t i = 0; i < info.num_options; ++i) {
-    rdm_option_spec o{};
-    o.struct_size = sizeof o;
-    EXPECT_EQ(rdm_algo_option_at(algo, i, &o), RDM_OK);
-    if (std::strcmp(o.key, key) == 0) return true;
-  }
-  return false;
-}
-
 inline rdm_agent_config agent_config() {
   rdm_agent_config c;
   EXPECT_EQ(rdm_agent_config_init(&c, sizeof c), RDM_OK);
@@ -189,17 +179,11 @@ inline rdm_result feed_epoch(rdm_agent* a, int horizon = 8) {
 }
 
 inline std::vector<unsigned char> policy_bytes(const rdm_agent* a) {
-  size_t n = 0;
-  EXPECT_EQ(rdm_agent_write_policy(a, nullptr, 0, &n), RDM_OK);
-  std::vector<unsigned char> out(n);
-  EXPECT_EQ(rdm_agent_write_policy(a, out.data(), n, &n), RDM_OK);
-  return out;
+  return written_bytes(
+      [&](void* out, size_t n, size_t* size) { return rdm_agent_write_policy(a, out, n, size); });
 }
 
 inline std::vector<unsigned char> saved(const rdm_agent* a) {
-  size_t n = 0;
-  EXPECT_EQ(rdm_agent_write_state(a, nullptr, 0, &n), RDM_OK) << rdm_last_error();
-  std::vector<unsigned char> out(n);
-  EXPECT_EQ(rdm_agent_write_state(a, out.data(), n, &n), RDM_OK);
-  return out;
+  return written_bytes(
+      [&](void* out, size_t n, size_t* size) { return rdm_agent_write_state(a, out, n, size); });
 }

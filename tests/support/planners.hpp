@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "owned.hpp"
+#include "written.hpp"
 
 inline std::vector<float> plan_of(const Planner& planner) {
   rdm_planner_spec s{};
@@ -16,9 +17,7 @@ inline std::vector<float> plan_of(const Planner& planner) {
 }
 
 inline std::vector<unsigned char> state_of(const Planner& planner) {
-  size_t size = 0;
-  EXPECT_EQ(rdm_planner_write_state(planner.get(), nullptr, 0, &size), RDM_OK);
-  std::vector<unsigned char> bytes(size);
-  EXPECT_EQ(rdm_planner_write_state(planner.get(), bytes.data(), size, &size), RDM_OK);
-  return bytes;
+  return written_bytes([&](void* out, size_t n, size_t* size) {
+    return rdm_planner_write_state(planner.get(), out, n, size);
+  });
 }

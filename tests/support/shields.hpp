@@ -2,6 +2,7 @@
 #pragma once
 #include "contract.hpp"
 #include "owned.hpp"
+#include "written.hpp"
 
 inline rdm_shield_config shield_config(const Pool& pool, const char* settings = "") {
   rdm_shield_config c;
@@ -28,9 +29,6 @@ inline rdm_shield_row row_of(const Shield& s, const Pool& pool, int32_t env) {
   return out;
 }
 inline std::vector<unsigned char> state_of(const Shield& s) {
-  size_t n = 0;
-  EXPECT_EQ(rdm_shield_write_state(s.get(), nullptr, 0, &n), RDM_OK);
-  std::vector<unsigned char> out(n);
-  EXPECT_EQ(rdm_shield_write_state(s.get(), out.data(), n, &n), RDM_OK);
-  return out;
+  return written_bytes(
+      [&](void* out, size_t n, size_t* size) { return rdm_shield_write_state(s.get(), out, n, size); });
 }
