@@ -1,9 +1,12 @@
 #!/usr/bin/env bash
 # release.sh [MODE...]: what `check.sh release` runs: the modes of check.sh, all of them unless some are given, in a clean copy of
 # the commit. Then it makes the files to publish, and writes one page: what passed, on which machine, in what time, and the hash of
-# each file. It can be stopped and called again: a mode that has passed for this commit is not run again.
+# each file. It can be stopped and called again: a mode that has passed for this commit is not run again. Nor is one that has a row
+# in examples/results/release.csv, also from another machine, if only documents have changed since the row's commit; modes that read
+# documents need a row of this commit.
 #   build/published/COMMIT/README.md   the page         build/published/COMMIT/MODE.log   what a mode said
 #   build/published/COMMIT/files/      source archive, .deb files, wheel, policies, SHA256SUMS
+#   build/published/COMMIT/release.csv the rows, to be copied to examples/results and committed
 # The exit status is 0 when every mode has passed and every file is there.
 set -u
 cd "$(dirname "$0")/.." || exit 1
@@ -15,23 +18,48 @@ for mode in $modes; do echo "$all" | grep -qxF -- "$mode" || die "check.sh has n
 commit=$(git rev-parse HEAD) short=$(git rev-parse --short=12 HEAD)
 version=$(sed -n 's/^#define RDM_VERSION_[A-Z]* \([0-9]*\)$/\1/p' include/redman/base.h | paste -sd.)
 out=$PWD/build/published/$short files=$PWD/build/published/$short/files copy=$PWD/build/published/tree
+rows=$out/release.csv kept=examples/results/release.csv
+columns='mode,commit,passed,failed,seconds,day,machine'
+machine="$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n1), $(nproc) processors, $(awk '/MemTotal/ { printf "%.0f GiB", $2 / 1048576 }' /proc/meminfo)"
 mkdir -p "$files"
 [ -d "$copy/.git" ] || git clone -q . "$copy" || die "cannot copy the tree"
 # builds stay, so that the next commit is not from nothing; nothing else does
 git -C "$copy" fetch -q "$PWD" HEAD || die "cannot fetch $commit"
 { git -C "$copy" checkout -q -f "$commit" && git -C "$copy" clean -qfd; } || die "cannot check out $commit"
 
+# holds COMMIT MODE: what passed at that commit still does, since nothing that the mode looks at has changed.
+holds() {
+  case $2 in
+    quick | dev | packages | pages) [ "$1" = "$commit" ] ;;
+    *) git diff --quiet "$1" "$commit" -- . ':!*.md' ':!examples/results' ':!examples/pictures' 2> /dev/null ;;
+  esac
+}
+
+# row MODE: its newest row that holds, of this folder or of the tree; fails where there is none.
+row() {
+  local line
+  while IFS= read -r line; do
+    if holds "$(cut -d, -f2 <<< "$line")" "$1"; then echo "$line"; return; fi
+  done < <(cat "$rows" "$kept" 2> /dev/null | grep "^$1," | tac)
+  return 1
+}
+
 for mode in $modes; do
-  if [ -s "$out/$mode.passed" ]; then continue; fi
+  if row "$mode" > /dev/null; then continue; fi
   start=$(date +%s)
   more=$([ "$mode" != arm64 ] || echo all)
   # shellcheck disable=SC2086
   (cd "$copy" && bash cmake/check.sh "$mode" $more) > "$out/$mode.log" 2>&1 < /dev/null
   status=$?
-  line="$(grep -E '^[0-9]+ passed, [0-9]+ failed$' "$out/$mode.log" | tail -n1)|$(($(date +%s) - start))|$(date -u +%F)"
+  seconds=$(($(date +%s) - start))
+  counts=$(sed -n 's/^\([0-9]*\) passed, \([0-9]*\) failed$/\1,\2/p' "$out/$mode.log" | tail -n1)
   rm -f "$out/$mode.failed"
-  if [ $status -eq 0 ]; then echo "$line" > "$out/$mode.passed"; else echo "$line" > "$out/$mode.failed"; fi
-  echo "$mode: $([ $status -eq 0 ] && echo passed || echo "failed, see $out/$mode.log"), ${line#*|}" | sed 's/|.*/ s/' >&2
+  if [ $status -eq 0 ]; then
+    echo "$mode,$commit,${counts:-,},$seconds,$(date -u +%F),\"$machine\"" >> "$rows"
+  else
+    echo "$mode,$commit,${counts:-,},$seconds,$(date -u +%F),\"$machine\"" > "$out/$mode.failed"
+  fi
+  echo "$mode: $([ $status -eq 0 ] && echo passed || echo "failed, see $out/$mode.log"), $seconds s" >&2
 done
 
 # ---- files
@@ -39,32 +67,39 @@ lost=0
 git archive --format=tar --prefix="redman-$version/" "$commit" | gzip -9n > "$files/redman-$version.tar.gz"
 git -C examples/policies archive --format=tar --prefix="redman-policies-$version/" "$commit" | gzip -9n > "$files/redman-policies-$version.tar.gz"
 # of mode packages, once it has passed for this commit: builds of an earlier one stay in the copy
-if [ -s "$out/packages.passed" ] && ! ls "$files"/*.whl > /dev/null 2>&1; then
+if grep -qs "^packages,$commit," "$rows" && ! ls "$files"/*.whl > /dev/null 2>&1; then
   cp "$copy"/build/package/packages/*.deb "$copy"/build/wheel/*.whl "$files"
 fi
 ls "$files"/*.deb > /dev/null 2>&1 && ls "$files"/*.whl > /dev/null 2>&1 || lost=1
 (cd "$files" && find . -type f ! -name SHA256SUMS -printf '%P\n' | sort | xargs sha256sum > SHA256SUMS)
 
 # ---- the page
-good=0 number=0 sum=0 rows=''
+good=0 number=0 sum=0 table='' list=''
 for mode in $all; do
   what=$(bash cmake/check.sh --markdown | awk -F' [|] |^[|] ' -v mode="$mode" '{ name = $2; gsub(/`/, "", name); sub(/ .*/, "", name) } name == mode { print $3 }')
-  counts='' seconds='' day=''
-  IFS='|' read -r counts seconds day < <(cat "$out/$mode.passed" "$out/$mode.failed" 2> /dev/null)
-  if [ -s "$out/$mode.passed" ]; then verdict=passed good=$((good + 1)); elif [ -s "$out/$mode.failed" ]; then verdict=FAILED; else verdict="not run"; fi
+  line='' passed='' failed='' seconds='' day='' at='' verdict='not run'
+  if line=$(row "$mode"); then
+    verdict=passed good=$((good + 1)) list+="$line"$'\n'
+  elif [ -s "$out/$mode.failed" ]; then
+    verdict=FAILED line=$(cat "$out/$mode.failed")
+  fi
+  IFS=, read -r _ at passed failed seconds day _ <<< "$line"
   number=$((number + 1)) sum=$((sum + ${seconds:-0}))
-  rows+="| \`$mode\` | $what | $verdict${counts:+: $counts} | ${seconds:+$((seconds / 60)) min $((seconds % 60)) s} | ${day:--} |"$'\n'
+  table+="| \`$mode\` | $what | $verdict${passed:+: $passed passed, $failed failed} | ${seconds:+$((seconds / 60)) min $((seconds % 60)) s} | ${day:--} | ${at:+\`${at:0:8}\`} |"$'\n'
 done
+{ echo "$columns"; printf '%s' "$list"; } > "$rows.new" && mv "$rows.new" "$rows"
 {
   echo "# redman $version"
   echo
-  echo "$good of $number jobs passed, in $((sum / 3600)) h $((sum / 60 % 60)) min, builds included. Commit \`$commit\`."
+  echo "$good of $number jobs passed, in $((sum / 3600)) h $((sum / 60 % 60)) min, builds included. Commit \`$commit\`; a job with another commit ran there, and only documents have changed since."
   echo
-  echo "Machine: $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -n1), $(nproc) processors, $(awk '/MemTotal/ { printf "%.0f GiB", $2 / 1048576 }' /proc/meminfo); $(. /etc/os-release && echo "$PRETTY_NAME"); $(c++ --version | head -n1)."
+  echo "$(. /etc/os-release && echo "$PRETTY_NAME"); $(c++ --version | head -n1). Machines:"
   echo
-  echo "| \`check.sh\` | what it asks | result | time | day |"
-  echo "|---|---|---|---|---|"
-  printf '%s' "$rows"
+  sed -n 's/.*,"\(.*\)"$/- \1/p' "$rows" | sort -u
+  echo
+  echo "| \`check.sh\` | what it asks | result | time | day | commit |"
+  echo "|---|---|---|---|---|---|"
+  printf '%s' "$table"
   echo
   echo "| file | bytes | SHA-256 |"
   echo "|---|---|---|"
