@@ -123,11 +123,13 @@ class Shielded {
         agent_.replace(i, ran ? action + static_cast<size_t>(i) * dim : shield_->own(i));
       d.mask[i] = !ends(i);
     }
+    inevitable_ -= unproven_violations();
   }
 
   // After the step: what of it is learned from.
   void charge(DecisionBuffers& d) {
     if (!shield_) return;
+    inevitable_ += unproven_violations();
     const auto costs = static_cast<size_t>(pool_.cost_dim());
     for (int32_t i = 0; i < shield_->num_envs(); ++i) {
       const auto e = static_cast<size_t>(i);
@@ -148,6 +150,7 @@ class Shielded {
                                counts_.projected + unproven);
     out->unproven = ranks.total(unproven);
     out->copied = ranks.total(now.copied - counts_.copied);
+    out->inevitable = ranks.total(inevitable_);
     shield_->forget_blocks();
   }
 
@@ -157,6 +160,13 @@ class Shielded {
   bool ends(int32_t env) const {
     const bool inevitable = shield_->row(env).kind == ShieldKind::kUnproven && !shield_->without_plan(env);
     return how_ == ShieldLearn::kEnd && refused(env) && !inevitable;
+  }
+  // So far, of worlds whose decision at hand is unproven.
+  int64_t unproven_violations() const {
+    int64_t sum = 0;
+    for (int32_t i = 0; i < shield_->num_envs(); ++i)
+      if (shield_->row(i).kind == ShieldKind::kUnproven) sum += pool_.violations(i);
+    return sum;
   }
 
   Agent& agent_;
@@ -168,6 +178,7 @@ class Shielded {
   // Before the rollout.
   ShieldCounts counts_;
   int64_t violations_ = 0;
+  int64_t inevitable_ = 0;  // since, control steps of unproven decisions that violated
 };
 
 // What the pool's worlds show to an agent with eyes.

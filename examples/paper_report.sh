@@ -145,13 +145,14 @@ short() {
 
 # shields: a row for each run under a shield, the throws first: what it did while it learned, and what its policy does.
 shields() {
-  echo "| task (cost limit) | seed | control steps | violating steps in training | under the shield: return @ cost, success | without: return @ cost, success | steps/s |"
+  echo "| task (cost limit) | seed | control steps | violating steps in training; inevitable | under the shield: return @ cost, success | without: return @ cost, success | steps/s |"
   echo "|---|---|---|---|---|---|---|"
   local task
   for task in $order; do
     awk -F, -v task="$task" "$number"'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next }
       $at["task"] == task && $at["algorithm"] == "ppo+predict" && $at["bare_return"] != "" {
-        printf "| `%s` (%s) | %d | %.3g M | %d | %s @ %s, %.0f %% | %s @ %s, %.0f %% | %s |\n", task, $at["limit"] + 0, $at["seed"], $at["env_steps"] / 1e6, $at["violations"],
+        printf "| `%s` (%s) | %d | %.3g M | %d; %s | %s @ %s, %.0f %% | %s @ %s, %.0f %% | %s |\n", task, $at["limit"] + 0, $at["seed"], $at["env_steps"] / 1e6, $at["violations"],
+          $at["inevitable"] != "" ? $at["inevitable"] : $at["violations"] == 0 ? 0 : "-",
           number($at["return"]), number($at["cost"]), 100 * $at["success"], number($at["bare_return"]), number($at["bare_cost"]), 100 * $at["bare_success"],
           number($at["env_steps"] / $at["wall_seconds"]) }' "$results/runs.csv"
   done
@@ -242,8 +243,9 @@ page "Fig. 7" fig7 "" fig7.svg > "$results/fig7.md"
   echo "# Learning under a shield"
   echo
   echo "PPO under \`--shield predict\`, one thread: the throws from nothing, the others from their bundled policies. A step violates when a"
-  echo "cost of it is above 0. Means over 100 new episodes by the mean action, once under the shield and once without. Other programs ran"
-  echo "beside the runs: their steps/s are at least these."
+  echo "cost of it is above 0. It is inevitable if the shield found no plan that avoids it (\`-\`: the run is older than this count). Means over"
+  echo "100 new episodes by the mean action, once under the shield and once without. Other programs ran beside the runs: their steps/s are at"
+  echo "least these."
   echo
   shields
 } > "$results/shield.md"

@@ -12,7 +12,7 @@
 # LONG_TASKS (the four throws), TASKS, ALGOS (those of a part that are wanted).
 #
 # RESULTS/runs.csv has a row for each run: its command, seed, steps, wall time; the mean action and the policy with its
-# noise over 100 fresh episodes each, learned under a shield: the mean action under it and, as bare_, without; the last tenth of training; control steps that violated in training; the hash of its
+# noise over 100 fresh episodes each, learned under a shield: the mean action under it and, as bare_, without; the last tenth of training; control steps that violated in training, and of these, under a shield, those that no plan avoids (inevitable); the hash of its
 # policy. RESULTS/*.md are the tables, feasible first (made by examples/paper_report.sh out of runs.csv), RESULTS/*.svg the
 # curves. The runs themselves, with all that `redman plot`, `eval` and `render` read, stay in OUT; OUT/redman-runs.tar.gz has them
 # in one file, whose bytes are those of the runs alone.
@@ -152,14 +152,14 @@ bare() {
   done | paste -sd,
 }
 
-header="name,part,task,algorithm,seed,limit,return,cost,cost_stderr,falls,success,length,sampled_return,sampled_cost,sampled_over,train_return,train_cost,train_over,train_swing,env_steps,wall_seconds,seconds_to_half,second_limit,second_cost,flags,violations,policy_sha256,return_stderr,over,cost_cvar,sampled_return_stderr,sampled_cost_stderr,bare_return,bare_cost,bare_success"
+header="name,part,task,algorithm,seed,limit,return,cost,cost_stderr,falls,success,length,sampled_return,sampled_cost,sampled_over,train_return,train_cost,train_over,train_swing,env_steps,wall_seconds,seconds_to_half,second_limit,second_cost,flags,violations,policy_sha256,return_stderr,over,cost_cvar,sampled_return_stderr,sampled_cost_stderr,bare_return,bare_cost,bare_success,inevitable"
 rows | while read -r name part task algo seed n flags; do
   f=$out/$name.json s=$out/$name.sampled.json
   if [ ! -s "$f" ] || [ ! -s "$s" ]; then continue; fi
   limit=$(value cost_limit "$f")
   case $limit in [0-9]*) ;; *) limit=-1 ;; esac
   tail=$(last_tenth "$out/$name/progress.csv" "$limit")
-  echo "$name,$part,$task,$algo,$seed,$limit,$(value return "$f"),$(value cost "$f"),$(value cost_stderr "$f"),$(value fall_rate "$f"),$(value success_rate "$f"),$(value length "$f"),$(value return_mean "$s"),$(value cost_mean "$s"),$(value violation_rate "$s"),$tail,$(value env_steps "$f"),$(wall_seconds "$out/$name/progress.csv"),$(reached "$out/$name/progress.csv"),$(of_second "$out/$name.mean.json"),$flags,$(value training_violating_steps "$f"),$(sha256sum < "$out/$name/policy.rdm" | cut -d" " -f1),$(value return_stderr "$f"),$(value violation_rate "$f"),$(value cost_cvar "$f"),$(value return_stderr "$s"),$(value cost_stderr "$s"),$(bare "$f")"
+  echo "$name,$part,$task,$algo,$seed,$limit,$(value return "$f"),$(value cost "$f"),$(value cost_stderr "$f"),$(value fall_rate "$f"),$(value success_rate "$f"),$(value length "$f"),$(value return_mean "$s"),$(value cost_mean "$s"),$(value violation_rate "$s"),$tail,$(value env_steps "$f"),$(wall_seconds "$out/$name/progress.csv"),$(reached "$out/$name/progress.csv"),$(of_second "$out/$name.mean.json"),$flags,$(value training_violating_steps "$f"),$(sha256sum < "$out/$name/policy.rdm" | cut -d" " -f1),$(value return_stderr "$f"),$(value violation_rate "$f"),$(value cost_cvar "$f"),$(value return_stderr "$s"),$(value cost_stderr "$s"),$(bare "$f"),$(value training_inevitable_steps "$f")"
 done > "$results/runs.csv.new"
 # runs of other calls stay; columns that are younger than their rows are empty
 {

@@ -352,7 +352,7 @@ void Agent::fill_counts(const EpochTotals& totals, int64_t skipped, Epoch& e) co
     to = n;
     if (n > 0) e.flags |= flag;
   };
-  e.violations = e.refused = e.unproven = e.copied = -1;  // who rolls out knows
+  e.violations = e.refused = e.unproven = e.copied = e.inevitable = -1;  // who rolls out knows
   count(e.skipped_gradients, skipped, kEpochSkippedGradients);
   count(e.invalid_rows, totals.invalid, kEpochInvalidRows);
   if (totals.cut > 0) e.flags |= kEpochCut;

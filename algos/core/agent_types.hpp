@@ -113,7 +113,8 @@ using CostValues = double[kMaxCosts];
   F(int64_t, violations)        \
   F(int64_t, refused)           \
   F(int64_t, unproven)          \
-  F(int64_t, copied)
+  F(int64_t, copied)            \
+  F(int64_t, inevitable)
 
 struct Epoch {
 #define RDM_MEMBER(type, member) type member{};

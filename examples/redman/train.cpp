@@ -191,6 +191,7 @@ void put_shields(Json& json, const Trainer& trainer, const Evaluation& bare, con
   if (!shielded.shield) return;
   json["training_interventions"] = whole_or_null(trainer.total("Shield/Refused"));
   json["training_unproven"] = whole_or_null(trainer.total("Shield/Unproven"));
+  json["training_inevitable_steps"] = whole_or_null(trainer.total("Shield/Inevitable"));
   put_shield(json, *shielded.shield);
   const Summary& s = shielded.summary;
   json["shielded"] = {{"return", s.return_mean},
@@ -205,8 +206,9 @@ std::string shields_text(const Json& json, const Evaluation& shielded) {
   return format("under the shield: return %.3f, cost %.3f, success %.0f%%\n", s.return_mean, first_cost(s),
                 100 * s.success_rate) +
          shield_text(*shielded.shield) + "in training: " + json["training_violating_steps"].dump() +
-         " violating steps, " + json["training_interventions"].dump() + " interventions, in " +
-         json["training_unproven"].dump() + " nothing was known to be clean\n";
+         " violating steps, of which " + json["training_inevitable_steps"].dump() + " were inevitable; " +
+         json["training_interventions"].dump() + " interventions, in " + json["training_unproven"].dump() +
+         " nothing was known to be clean\n";
 }
 
 // Of one process, or the first of several.

@@ -190,6 +190,8 @@ typedef struct rdm_epoch {
   int64_t unproven;           /* of these, decisions for which no way within the budgets was found;
                                * -1: likewise */
   int64_t copied;             /* control steps simulated in the shield's copies; -1: likewise */
+  int64_t inevitable;         /* of violations, control steps of the unproven decisions: with exact
+                               * copies no others violate a budget; -1: likewise */
 } rdm_epoch;
 /* Learns from a full horizon; last_obs [num_envs][obs_dim] is the observation after the last
  * record. io may be NULL. CANCELLED after rdm_agent_cancel: the horizon is dropped, full or not,

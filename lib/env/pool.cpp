@@ -326,4 +326,8 @@ int64_t Pool::violations() const {
   return sum;
 }
 
+int64_t Pool::violations(int32_t env) const {
+  return impl_->slots[env].counters.violations;
+}
+
 }  // namespace rdm

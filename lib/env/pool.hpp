@@ -151,6 +151,7 @@ class Pool {
   const World& world(int32_t env) const;
   PoolStats stats() const;
   int64_t violations() const;  // of the stats, without measuring worlds
+  int64_t violations(int32_t env) const;
   Workers& workers();
 
  private:

@@ -278,7 +278,7 @@ TEST(Shields, TakeNothingFromTheHeap) {
 // ---- learning
 
 struct Learned {
-  int64_t violations = 0, refused = 0, unproven = 0, steps = 0;
+  int64_t violations = 0, refused = 0, unproven = 0, inevitable = 0, steps = 0;
   std::vector<unsigned char> policy;
 };
 
@@ -307,6 +307,7 @@ Learned learn(const char* task, const char* pool_settings, const char* agent_set
     out.violations += e.violations;
     out.refused += e.refused;
     out.unproven += e.unproven;
+    out.inevitable += e.inevitable;
   }
   EXPECT_EQ(out.violations, violations_of(pool));
   out.steps = e.env_steps;
@@ -316,16 +317,30 @@ Learned learn(const char* task, const char* pool_settings, const char* agent_set
 
 constexpr char kSmall[] = "hidden=16\nhorizon=16\naction_repeat=4\nmultiplier_init=1";
 
+// Episodes begin with the finger outside of its window: some steps cost whatever it does, and no others do.
+TEST(ShieldedLearning, CountsWhatNoPlanAvoidsApart) {
+  for (const char* how : {"own", "end"}) {
+    const std::string settings = std::string(kSmall) + "\nshield_learn=" + how;
+    const Learned l =
+        learn("hand_over_safe_finger", "start_finger=paper", settings.c_str(), "unproven=least", 3);
+    EXPECT_GT(l.inevitable, 0) << how;
+    EXPECT_EQ(l.inevitable, l.violations) << how;
+    EXPECT_GE(4 * l.unproven, l.inevitable) << how;
+  }
+}
+
 TEST(ShieldedLearning, NeverBreaksARule) {
   const Learned free = learn("hand_over_safe_joint", "", kSmall, nullptr, 3);
   EXPECT_GT(free.violations, 0);
   EXPECT_EQ(free.refused, -3);  // there was none
+  EXPECT_EQ(free.inevitable, -3);
   std::vector<std::vector<unsigned char>> policies{free.policy};
   for (const char* how : {"own", "applied", "cost", "end"}) {
     const std::string settings = std::string(kSmall) + "\nshield_learn=" + how;
     const Learned l = learn("hand_over_safe_joint", "", settings.c_str(), "", 3);
     EXPECT_EQ(l.violations, 0) << how;
     EXPECT_EQ(l.unproven, 0) << how;
+    EXPECT_EQ(l.inevitable, 0) << how;
     EXPECT_GT(l.refused, 0) << how;
     for (const auto& other : policies) EXPECT_NE(l.policy, other) << how << ": learns as another one";
     policies.push_back(l.policy);

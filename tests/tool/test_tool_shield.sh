@@ -39,6 +39,7 @@ train="--task hand_over_safe_joint --envs 16 --steps 20000 --seed 2 --set shield
 # shellcheck disable=SC2086
 "$tool" train $train --out whole > whole.json 2> /dev/null || exit 1
 check 'violations in training' test "$(number training_violating_steps whole.json)" = 0
+check 'what is inevitable is not counted' test "$(number training_inevitable_steps whole.json)" = 0
 check 'nothing was refused' less 0 "$(number training_interventions whole.json)"
 check 'nor evaluated under the shield' grep -q '"shielded":{' whole.json
 check 'progress.csv has no violations' grep -q 'Metrics/Violations.*Shield/Refused' whole/progress.csv

@@ -1855,6 +1855,8 @@ class Epoch(Record):
     refused: decisions that a shield changed; -1: there was no shield
     unproven: of these, decisions for which no way within the budgets was found; -1: likewise
     copied: control steps simulated in the shield's copies; -1: likewise
+    inevitable: of violations, control steps of the unproven decisions: with exact copies no others violate a
+        budget; -1: likewise
     """
 
     epoch: int
@@ -1892,6 +1894,7 @@ class Epoch(Record):
     refused: int
     unproven: int
     copied: int
+    inevitable: int
 
 
 class rdm_epoch(Structure):
@@ -1941,6 +1944,8 @@ class rdm_epoch(Structure):
     refused: decisions that a shield changed; -1: there was no shield
     unproven: of these, decisions for which no way within the budgets was found; -1: likewise
     copied: control steps simulated in the shield's copies; -1: likewise
+    inevitable: of violations, control steps of the unproven decisions: with exact copies no others violate a
+        budget; -1: likewise
     """
 
     struct_size: int
@@ -1982,6 +1987,7 @@ class rdm_epoch(Structure):
     refused: int
     unproven: int
     copied: int
+    inevitable: int
     _fields_ = [
         ("struct_size", c_uint32),
         ("epoch", c_int32),
@@ -2022,6 +2028,7 @@ class rdm_epoch(Structure):
         ("refused", c_int64),
         ("unproven", c_int64),
         ("copied", c_int64),
+        ("inevitable", c_int64),
     ]
 
 

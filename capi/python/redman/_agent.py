@@ -41,8 +41,8 @@ _MODES = {"sample": ActMode.SAMPLE, "mean": ActMode.MEAN}
 class Epoch(_abi.Epoch, Dict[str, Any]):  # type: ignore[misc]  # a record has a hash, a dict has none
     """One row of the learning curve; means over the last 100 finished episodes.
 
-    costs and multipliers have the values of cost and multiplier by the names of costs. violations, refused, unproven and
-    copied are None where there was nothing to count. It is also a dict of all its values, for json.dumps and loggers.
+    costs and multipliers have the values of cost and multiplier by the names of costs. violations, refused, unproven,
+    copied and inevitable are None where there was nothing to count. It is also a dict of all its values, for json.dumps and loggers.
     """
 
     costs: dict[str, float]
@@ -50,10 +50,11 @@ class Epoch(_abi.Epoch, Dict[str, Any]):  # type: ignore[misc]  # a record has a
     # Control steps in which column 0, or a cost with a limit by the task, was above 0; None: not an epoch of rollout.
     violations: Optional[int]  # type: ignore[assignment]
     # Decisions that a shield did not let through, and of these where nothing was known to be clean; control steps of its copies;
-    # None: there was none.
+    # violating control steps of the unproven decisions. None: there was no shield.
     refused: Optional[int]  # type: ignore[assignment]
     unproven: Optional[int]  # type: ignore[assignment]
     copied: Optional[int]  # type: ignore[assignment]
+    inevitable: Optional[int]  # type: ignore[assignment]
 
     def __init__(self, struct: Union[_abi.rdm_epoch, Mapping[str, Any]], names: Optional[Sequence[str]] = None) -> None:
         if isinstance(struct, Mapping):  # a copy
@@ -64,7 +65,7 @@ class Epoch(_abi.Epoch, Dict[str, Any]):  # type: ignore[misc]  # a record has a
             cost, multiplier = self.cost[columns], self.multiplier[columns]
             self.__dict__.update(cost=cost, multiplier=multiplier, costs=dict(zip(names or (), cost)),
                                  multipliers=dict(zip(names or (), multiplier)))
-            self.__dict__.update((name, None) for name in ("violations", "refused", "unproven", "copied")
+            self.__dict__.update((name, None) for name in ("violations", "refused", "unproven", "copied", "inevitable")
                                  if getattr(self, name) < 0)
         self.update(self.__dict__)
 

@@ -55,6 +55,7 @@ void visit(const std::vector<CostColumn>& columns, const Row& row, Add add) {
   add("Metrics/TestEpCost", row.evaluation.cost);
   add("Shield/Refused", counted(e.refused));
   add("Shield/Unproven", counted(e.unproven));
+  add("Shield/Inevitable", counted(e.inevitable));
   add("Shield/Copied", counted(e.copied));
   add("Time/Epoch", row.times.epoch);
   add("Time/Evaluation", row.times.evaluation);
