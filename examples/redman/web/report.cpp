@@ -195,6 +195,7 @@ std::vector<Chart> charts_of(const TaskReport& t) {
       {"Loss/Loss_cost_critic", "Loss of the cost critic"},
       {"Shield/Refused", "Decisions that the shield refused"},
       {"Shield/Unproven", "Decisions in which nothing was known to be clean"},
+      {"Shield/Inevitable", "Violating steps of these decisions"},
       {"Time/FPS", "Control steps per second"}};
   for (const auto& [column, title] : others) out.push_back({column, title, "", false, false});
   return out;
