@@ -30,7 +30,7 @@ git -C "$copy" fetch -q "$PWD" HEAD || die "cannot fetch $commit"
 # holds COMMIT MODE: what passed at that commit still does, since nothing that the mode looks at has changed.
 holds() {
   case $2 in
-    quick | dev | packages | pages) [ "$1" = "$commit" ] ;;
+    quick | dev | small | physics | packages | pages) [ "$1" = "$commit" ] ;;
     *) git diff --quiet "$1" "$commit" -- . ':!*.md' ':!examples/results' ':!examples/pictures' 2> /dev/null ;;
   esac
 }
@@ -40,7 +40,7 @@ row() {
   local line
   while IFS= read -r line; do
     if holds "$(cut -d, -f2 <<< "$line")" "$1"; then echo "$line"; return; fi
-  done < <(cat "$rows" "$kept" 2> /dev/null | grep "^$1," | tac)
+  done < <(cat "$kept" "$rows" 2> /dev/null | grep "^$1," | tac)
   return 1
 }
 
