@@ -229,7 +229,7 @@ page() {
   echo "# $1"
   echo
   table "$2"
-  [ -z "${4:-}" ] || [ ! -e "$results/$4" ] || { echo; echo "![Return, cost and success over control steps: the mean of each algorithm's seeds]($4)"; }
+  [ -z "${4:-}" ] || [ ! -e "$results/$4" ] || { echo; echo "![Return, cost and success over control steps: the mean of the runs that the legend counts]($4)"; }
   note
   [ -n "${3:-}" ] || return 0
   together "$2"

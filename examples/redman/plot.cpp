@@ -8,6 +8,7 @@
 #include "common/ownership.hpp"
 #include "common/text.hpp"
 #include "draw/svg.hpp"
+#include "run/comparison.hpp"
 #include "run/curves.hpp"
 #include "run/run_data.hpp"
 
@@ -21,24 +22,31 @@ struct PlotFlags {
   bool each = false;
 };
 
-// Runs that share a line: seeds of one task, algorithm and, where it tells lines apart, limit.
+// Runs that share a line: seeds of one configuration.
 struct Group {
   std::string label;
   std::vector<const RunData*> runs;
   size_t color = 0;
 };
 
-std::vector<Group> make_groups(const std::vector<const RunData*>& runs, bool each, bool by_limit) {
+// Configurations as `report` tells them apart; with `each` a group for every run.
+std::vector<Group> make_groups(const std::vector<const RunData*>& runs, bool each, bool with_limit) {
   std::vector<Group> groups;
-  for (const RunData* run : runs) {
-    std::string label = run->algo;
-    if (by_limit && run->limit >= 0) label += ", limit " + number_text(run->limit);
-    if (each) label += ", seed " + std::to_string(run->seed);
-    auto found = std::find_if(groups.begin(), groups.end(), [&](const Group& g) { return g.label == label; });
-    if (each || found == groups.end()) found = groups.insert(groups.end(), {label, {}, groups.size()});
-    found->runs.push_back(run);
+  for (const Configuration& c : group_runs(runs)) {
+    std::string label = c.label;
+    const bool said = label.find(": limit ") != label.npos || label.find(", limit ") != label.npos;
+    if (with_limit && !said && c.runs[0]->limit >= 0) label += ", limit " + number_text(c.runs[0]->limit);
+    if (!each) groups.push_back({label, c.runs, groups.size()});
+    for (size_t i = 0; each && i < c.runs.size(); ++i)
+      groups.push_back({label + ", seed " + std::to_string(c.runs[i]->seed), {c.runs[i]}, groups.size()});
   }
   return groups;
+}
+
+// "ppo_lag (5 runs)", "ppo_lag (2 to 5 runs)" where it has more of one task than of another.
+std::string legend_text(const std::string& label, size_t fewest, size_t most) {
+  if (most == 1) return label;
+  return label + (fewest == most ? format(" (%zu runs)", most) : format(" (%zu to %zu runs)", fewest, most));
 }
 
 Panel make_panel(const std::string& title, const std::string& column, const std::vector<Group>& groups,
@@ -91,22 +99,27 @@ Figure chart_of_a_task(const std::vector<const RunData*>& runs, bool each) {
   if (has_numbers(violations)) chart.panels.push_back(std::move(violations));
   chart.panels[1].levels = limit_levels(groups);
   for (const Group& g : groups)
-    chart.legend.push_back(
-        {g.color, g.runs.size() > 1 ? g.label + format(" (%zu runs)", g.runs.size()) : g.label});
+    chart.legend.push_back({g.color, legend_text(g.label, g.runs.size(), g.runs.size())});
   return chart;
 }
 
-// A row of panels for each task; an algorithm has one colour in all of them.
+// A row of panels for each task; a configuration has one colour in all of them.
 Figure chart_of_tasks(const std::vector<std::vector<const RunData*>>& tasks, bool each) {
+  struct Known {
+    std::string label;
+    size_t fewest, most;  // runs of it in one task
+  };
+  std::vector<Known> known;
   Figure chart{"Learning curves", {}, {}, 0};
   for (const auto& runs : tasks) {
     std::vector<Group> groups = make_groups(runs, each, false);
     for (Group& g : groups) {
-      auto& legend = chart.legend;
-      const auto known = std::find_if(legend.begin(), legend.end(),
-                                      [&](const LegendEntry& e) { return e.label == g.label; });
-      g.color = static_cast<size_t>(known - legend.begin());
-      if (known == legend.end()) legend.push_back({g.color, g.label});
+      auto found =
+          std::find_if(known.begin(), known.end(), [&](const Known& k) { return k.label == g.label; });
+      if (found == known.end()) found = known.insert(known.end(), {g.label, g.runs.size(), g.runs.size()});
+      found->fewest = std::min(found->fewest, g.runs.size());
+      found->most = std::max(found->most, g.runs.size());
+      g.color = static_cast<size_t>(found - known.begin());
     }
     chart.lines += groups.size();
     chart.panels.push_back(make_panel(runs[0]->task + ": return", "Metrics/EpRet", groups));
@@ -114,6 +127,8 @@ Figure chart_of_tasks(const std::vector<std::vector<const RunData*>>& tasks, boo
     chart.panels.back().levels = limit_levels(groups);
     chart.panels.push_back(make_panel("episodes with success", "Metrics/SuccessRate", groups, true));
   }
+  for (const Known& k : known)
+    chart.legend.push_back({chart.legend.size(), legend_text(k.label, k.fewest, k.most)});
   return chart;
 }
 
@@ -142,9 +157,10 @@ void add_plot(CLI::App& app, Run& run) {
   auto flags = std::make_shared<PlotFlags>();
   CLI::App* command = app.add_subcommand("plot", "Draw the learning curves of run folders as SVG");
   command
-      ->add_option("folders", flags->folders,
-                   "run folders, or folders that hold some; seeds are drawn as a mean with a band, each task "
-                   "as a row of panels")
+      ->add_option(
+          "folders", flags->folders,
+          "run folders, or folders that hold some; seeds of one configuration are drawn as a mean with a "
+          "band, each task as a row of panels")
       ->required();
   const CLI::Option* out = command->add_option("--out", flags->out, "SVG file to write; default: plot.svg");
   command->add_flag("--each", flags->each, "draw one line for every folder");

@@ -284,6 +284,21 @@ class Drawn(unittest.TestCase):
         self.assertEqual((count(redman.Curves(curves, each=True), "polyline"), count(redman.Curves(curves, each=True), "polygon")), (8, 0))
         self.assertEqual(count(redman.Curves([curves[0], curves[0]]), "polyline"), 4)  # one seed twice is no sample of seeds
 
+    def test_runs_of_other_settings_have_a_line_and_a_row_of_their_own(self):
+        made = [redman.train("ball_run", "ppo", steps=600, envs=2, seed=seed, progress=False, horizon=50, shield=shield)
+                for seed, shield in ((0, None), (1, None), (2, "predict"), (3, "predict"))]
+        names = ["ppo", "ppo: shield predict"]
+        from redman._curve import lines_of
+        self.assertEqual([line.label for line in lines_of([run.curve for run in made], False)],
+                         [f"ball_run {name} (2 seeds)" for name in names])
+        self.assertEqual({name: len(runs) for name, runs in redman.compare(made, episodes=2).runs.items()}, dict.fromkeys(names, 2))
+        with tempfile.TemporaryDirectory() as folder:
+            paths = [Path(folder, str(clip)) for clip in (0.1, 0.2)]
+            for path, clip in zip(paths, (0.1, 0.2)):
+                redman.train("bandit", "ppo", steps=500, envs=4, seed=int(10 * clip), progress=False, out=path, clip=clip)
+            self.assertEqual(list(redman.compare(folder, episodes=2).runs), ["ppo: clip 0.1", "ppo: clip 0.2"])
+            self.assertEqual(len(lines_of(list(redman.curve(*paths)), False)), 2)
+
     def test_a_band_is_the_mean_and_the_deviation_at_common_steps(self):
         from redman._curve import lines_of
         made = [redman.Curve({"TotalEnvSteps": [0, last], "Metrics/EpRet": [first, first + slope * last]}, "x", None, "", "k", seed)

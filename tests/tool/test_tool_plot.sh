@@ -26,6 +26,14 @@ check 'an algorithm is named once' 'class="legend"' all.svg 2
 check 'the limits' 'class="level"' all.svg 2
 "$tool" plot ball_run.* --each --out each.svg --json > each || exit 1
 check 'lines of each' '"lines":3' each 1
+# A run of other settings, here under a shield, is no seed of the others.
+"$tool" train --task ball_run --algo ppo --seed 1 --envs 2 --steps 600 --set max_steps=20 --set horizon=50 --shield predict \
+  --out shielded --json > /dev/null 2> err || exit 1
+"$tool" plot ball_run.ppo.0 shielded --out two.svg --json > two || exit 1
+check 'lines of two settings' '"lines":2' two 1
+check 'what tells them apart' '>ppo: shield predict, limit 25<' two.svg 1
+"$tool" plot . --out all.svg --json > all || exit 1
+check 'seeds in the legend' '>ppo_lag (1 to 2 runs)<' all.svg 1
 # A point is the mean of the epochs in its interval: returns of 9 and 11 in turn are drawn as 10.
 cp -r ball_run.ppo.0 turns
 awk -F, -v OFS=, 'NR == 1 { print; for (i = 1; i <= NF; ++i) at[$i] = i }

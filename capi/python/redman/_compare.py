@@ -10,7 +10,7 @@ from typing import Any, Iterable, Mapping, NamedTuple, Optional, Sequence, Union
 import numpy as np
 
 from . import stats
-from ._curve import Curve, Curves
+from ._curve import Curve, Curves, differences
 from ._error import ArgumentError, UsageError
 from ._html import number, pair, share, table
 from ._names import Hinted, keywords
@@ -160,17 +160,21 @@ def compare(*runs: Any, episodes: Optional[int] = None) -> Comparison:
         redman.compare(redman.train("ball_run", ["ppo", "ppo_lag"], steps=1e6, seed=range(5)))
         redman.compare({"small": ["runs/a0", "runs/a1"], "large": ["runs/b0", "runs/b1"]})
 
-    Runs of one algorithm are a row; a dict gives the rows names of your own. The policy of each run plays 100 new episodes, or as
+    Runs that differ in their seeds alone are a row, named after their algorithm and, where it has several rows, what distinguishes
+    them ("ppo: shield predict"); a dict gives the rows names of your own. The policy of each run plays 100 new episodes, or as
     many as `episodes` says. The tool's `redman report` makes a page of run folders, with all algorithms and tasks.
     """
     named: dict[str, list[Run]] = {}
+    loose: list[Run] = []  # without a name of the caller's
     for given in runs:
         if isinstance(given, Mapping):
             for name, these in given.items():
                 named.setdefault(str(name), []).extend(_runs(these))
         else:
-            for run in _runs(given):
-                named.setdefault(run.algo, []).append(run)
+            loose += _runs(given)
+    for run in loose:
+        rivals = [other._settings for other in loose if (other.task, other.algo) == (run.task, run.algo)]
+        named.setdefault(run.algo + differences(run._settings, rivals), []).append(run)
     named = {name: these for name, these in named.items() if these}
     if not named:
         raise UsageError("compare: give runs, run folders, or a dict of them by name")

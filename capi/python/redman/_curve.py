@@ -56,12 +56,13 @@ class Curve(_Drawn, Hinted, Dict[str, Column]):
               "columns": "list(curve) has the names of the columns", "epochs": "curve['Train/Epoch']"}
 
     def __init__(self, columns: Mapping[str, Any] = {}, label: str = "", limit: Optional[float] = None,
-                 folder: str = "", kind: str = "", seed: Optional[int] = None) -> None:
+                 folder: str = "", kind: str = "", seed: Optional[int] = None, settings: Mapping[str, str] = {}) -> None:
         super().__init__((name, np.asarray(values, np.float64)) for name, values in columns.items())
         self.label = label
         self.limit = limit  # of the first cost
         self.folder = folder  # where it was read, "" for none
-        self.kind, self.seed = kind, seed  # task and algorithm: curves of one kind with different seeds share a line
+        self.kind, self.seed = kind, seed  # task and algorithm
+        self.settings = dict(settings)  # all others: curves of one kind and settings with different seeds share a line
 
     @property
     def steps(self) -> Column:
@@ -90,8 +91,8 @@ class Curve(_Drawn, Hinted, Dict[str, Column]):
 
 
 class Curves(_Drawn, Hinted, Sequence[Curve]):
-    """Several runs in one picture. Runs of one task, algorithm and limit with different seeds are drawn as their mean in a band of
-    one standard deviation on each side, as `redman plot` does; each=True draws a line for each run."""
+    """Several runs in one picture. Runs that differ in their seeds alone are drawn as their mean in a band of one standard
+    deviation on each side, as `redman plot` does; each=True draws a line for each run."""
 
     _hints = {"show": _DRAWS, "draw": _DRAWS}
 
@@ -123,20 +124,32 @@ def read(folder: Union[str, os.PathLike[str]]) -> Curve:
         table = np.array(rows, dtype=np.float64).reshape(len(rows), len(names))
     except ValueError as error:
         raise FormatError(f"{path}/progress.csv: {error}") from None
-    label, limit, kind, seed = path.name, None, "", None
+    label, limit, kind, seed, settings = path.name, None, "", None, {}
     try:
         config = json.loads(read_bytes(path / "config.json", MOST_JSON))
         label = f"{config['task']} {config['algo']} seed {config['seed']}"
         limit = config["cost_limits"].get("cost")
-        kind, seed = f"{config['task']} {config['algo']}", int(config["seed"])
+        kind, seed, settings = f"{config['task']} {config['algo']}", int(config["seed"]), settings_of(config)
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         pass  # the columns alone are a curve too
-    return Curve({name: table[:, i] for i, name in enumerate(names)}, label, limit, str(path), kind, seed)
+    return Curve({name: table[:, i] for i, name in enumerate(names)}, label, limit, str(path), kind, seed, settings)
+
+
+def settings_of(config: Mapping[str, Any]) -> dict[str, str]:
+    """What two runs of a config.json's task and algorithm may differ in, as `redman plot` and `report` see it: "clip" by its
+    value. What is the run's seed, or does not change what it learns, is not among them."""
+    parts = ("train_cfgs", "algo_cfgs", "env_cfgs", "teach_cfgs")
+    out = {key: str(value) for part in parts for key, value in config.get(part, {}).items()}
+    out.update({"limit" if name == "cost" else f"{name} limit": f"{limit:g}" for name, limit in config.get("cost_limits", {}).items()})
+    for name in ("threads", "tensorboard", "cost_limit"):
+        out.pop(name, None)
+    out.update({name: str(config[name]) for name in ("task_file", "own_costs", "own_reward") if name in config})
+    return out
 
 
 def curve(*folders: Union[str, os.PathLike[str]], each: bool = False) -> Union[Curve, Curves]:
-    """The curve of a run folder, or several in one picture: seeds of one task and algorithm as a mean with a band, or, with
-    each=True, a line for each."""
+    """The curve of a run folder, or several in one picture: runs that differ in their seeds alone as a mean with a band, or,
+    with each=True, a line for each."""
     curves = [read(folder) for folder in folders]
     return curves[0] if len(curves) == 1 else Curves(curves, each)
 
@@ -174,18 +187,28 @@ def _on(steps: Column, values: Column, at: Column) -> Column:
     return np.interp(at, steps, values, left=np.nan, right=np.nan)
 
 
+_MOST_NAMED, _LONGEST = 3, 40  # settings in a label, characters of one
+
+
+def differences(settings: Mapping[str, str], rivals: Sequence[Mapping[str, str]]) -> str:
+    """How a label says what distinguishes settings from others: ": shield predict"; "" for nothing."""
+    keys = sorted(key for key in settings if len({other.get(key) for other in rivals}) > 1)
+    texts = [f"{key} {settings[key]}" for key in keys[:_MOST_NAMED]]
+    shown = [text if len(text) <= _LONGEST else text[:_LONGEST] + "..." for text in texts]
+    return (": " if keys else "") + ", ".join(shown + ["..."] * (len(keys) > _MOST_NAMED))
+
+
 def lines_of(curves: Sequence[Curve], each: bool) -> list[_Line]:
-    """Curves that share a line: those of one kind and limit, whose seeds all differ."""
+    """Curves that share a line: those of one kind and the same settings, whose seeds all differ."""
     groups: dict[Any, list[Curve]] = {}
     for number, one in enumerate(curves):
         alone = each or not one.kind or one.seed is None
-        groups.setdefault(number if alone else (one.kind, one.limit), []).append(one)
+        groups.setdefault(number if alone else (one.kind, one.limit, *sorted(one.settings.items())), []).append(one)
     lines = []
     for group in groups.values():
         if len({one.seed for one in group}) == len(group) > 1:
-            limits = {one.limit for one in curves if one.kind == group[0].kind}
-            limit = "" if len(limits) == 1 or group[0].limit is None else f", limit {group[0].limit:g}"
-            lines.append(_Line(group, f"{group[0].kind}{limit} ({len(group)} seeds)"))
+            rivals = [one.settings for one in curves if one.kind == group[0].kind]
+            lines.append(_Line(group, f"{group[0].kind}{differences(group[0].settings, rivals)} ({len(group)} seeds)"))
         else:
             lines += [_Line([one], "") for one in group]
     single = [line for line in lines if not line.label]

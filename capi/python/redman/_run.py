@@ -34,7 +34,8 @@ class Run(Hinted):
         "returns": "run.curve.returns", "costs": "run.curve.costs"}
 
     def __init__(self, task: str, algo: str, seed: int, options: Mapping[str, Value], cost_limits: Mapping[str, Optional[float]],
-                 policy: Policy, agent: Callable[[], Agent], folder: Optional[Path] = None, own: Optional[Own] = None) -> None:
+                 policy: Policy, agent: Callable[[], Agent], folder: Optional[Path] = None, own: Optional[Own] = None,
+                 settings: Mapping[str, str] = {}) -> None:
         self.task, self.algo, self.seed, self.options = task, algo, seed, dict(options)
         self.cost_limits = dict(cost_limits)  # of all costs by name, None where there is none
         self.folder, self.policy = folder, policy
@@ -42,7 +43,7 @@ class Run(Hinted):
         self.seconds = 0.0
         self._judged: Optional[tuple[Policy, Evaluation]] = None
         self.interrupted = False  # it has fewer steps than it was to have
-        self._own = own
+        self._own, self._settings = own, settings  # the latter of its curve
         self._agent: Union[Agent, Callable[[], Agent]] = agent
         self._rows: dict[str, list[float]] = {}
 
@@ -65,7 +66,7 @@ class Run(Hinted):
     def curve(self) -> Curve:
         """Progress of the epochs."""
         return Curve(self._rows, f"{self.task} {self.algo} seed {self.seed}", next(iter(self.cost_limits.values()), None),
-                     str(self.folder or ""), f"{self.task} {self.algo}", self.seed)
+                     str(self.folder or ""), f"{self.task} {self.algo}", self.seed, self._settings)
 
     @property
     def epochs(self) -> list[dict[str, float]]:

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any, List, Mapping, Optional, Sequence, Tuple, TypeVar, Union, overload
 
 from . import _discovery, _taught
+from ._curve import settings_of
 from ._error import ArgumentError, FormatError, UnsupportedError, UsageError
 from ._files import MOST_TASK, read_whole
 from ._imported import path_of
@@ -252,7 +253,8 @@ def _begun(wanted: Settings, given: Mapping[str, Any], held: contextlib.ExitStac
 def _run_of(trainer: Trainer) -> Run:
     s = trainer.settings
     return Run(s.task, trainer.agent.algo.name, s.seed, s.options, dict(zip(trainer.cost_names, trainer.limits)),
-               trainer.agent.policy(), lambda: trainer.agent, Path(s.out) if s.out else None, s.own)
+               trainer.agent.policy(), lambda: trainer.agent, Path(s.out) if s.out else None, s.own,
+               settings_of(trainer.config()))
 
 
 _MOST_BLOCKS, _LEAST_BLOCKS, _BLOCK_WORLDS = 64, 4, 16
@@ -382,7 +384,7 @@ def loaded_run(folder: FolderPath) -> Run:
     else:
         names = list(_discovery.task(settings.task).costs)
     limits = {name: config["cost_limits"].get(name) for name in names}
-    run = Run(settings.task, settings.algo, settings.seed, settings.options, limits, policy, agent, path, settings.own)
+    run = Run(settings.task, settings.algo, settings.seed, settings.options, limits, policy, agent, path, settings.own, settings_of(config))
     run._read_progress(path)
     run.env_steps = int(max(run._rows.get("TotalEnvSteps") or [0]))
     last = run._rows.get("Time/Total") or [0.0]
