@@ -1,5 +1,5 @@
 // A shield's state as bytes: plans, streams, counts and the host's guards, with what says whose they are; behind them, in
-// a section that states of 1.0.0 do not have, which decisions were seen last and what backups remember of them.
+// a section that the first states did not have, which decisions were seen last and what backups remember of them.
 #include <cmath>
 
 #include "base/error.hpp"
