@@ -107,6 +107,7 @@ Report run_eval(EvalFlags flags) {
   apply_sets(flags.sets, flags.pool, nullptr);
   choice.limits.insert(choice.limits.end(), flags.limits.begin(), flags.limits.end());
   say_worlds(flags.pool, flags.episodes);
+  say_budget(flags.pool, flags.limits);
   const Evaluation e = evaluate(choice, flags.pool, choice.limits, flags.episodes, flags.stochastic);
   say_trouble(e.summary.trouble, "eval");
   Json json = {{"policy", flags.policy}, {"task", task_at(find_task(flags.pool.task)).name}};

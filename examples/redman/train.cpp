@@ -81,6 +81,7 @@ Trainer begin_run(TrainFlags flags, const Ranks* ranks) {
     adopt_teacher(run.teach, flags.task_given, flags.sets, run.pool);
   }
   apply_sets(flags.sets, run.pool, &run.agent);
+  if (!ranks || ranks->first()) say_budget(run.pool, run.limits);
   run.steps = whole_steps(flags.steps);
   run.shield = read_shield_word(flags.shield);
   if (run.teach.asked()) {

@@ -27,6 +27,8 @@ join said now | awk '
 "$tool" eval --task jenga --policy trained --episodes 1 --json | grep -q '"policy":"trained","task":"jenga"' || { echo "eval"; failed=1; }
 "$tool" eval --policy trained:jenga --episodes 1 --json | grep -q '"task":"jenga"' || { echo "the word's task"; failed=1; }
 "$tool" export --policy trained:jenga --safetensors j > /dev/null || { echo "export"; failed=1; }
+"$tool" export --policy trained --safetensors j 2> err && { echo "export of no task"; failed=1; }
+grep -q 'give trained:TASK' err || { echo "no word of the task: $(cat err)"; failed=1; }
 "$tool" render --task jenga --policy trained --step 3 --out j.png > /dev/null || { echo "render"; failed=1; }
 "$tool" eval --task "$here/../../examples/scenes/touch.task" --policy trained 2> err && { echo "a task without one"; failed=1; }
 grep -q 'none for task touch_puck.*there is one for .*jenga' err || { cat err; failed=1; }

@@ -131,6 +131,9 @@ signal raw
 json cost_mean eval --task ball_circle --policy zero --episodes 3
 signal flag
 
+# A limit of the learner is none of option budget, which has its own.
+expect 0 'give --set limit=3' eval --task ball_run --policy zero --episodes 1 --set budget=end --cost-limit 3
+
 # Failures keep the promise of --json too, and a folder that holds a run is not written over.
 "$tool" train --task nothing --json > out 2> err
 [ $? -eq 2 ] && grep -q '^{"error":' out || { echo "a failure with --json printed: $(cat out)"; failed=1; }

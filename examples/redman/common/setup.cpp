@@ -79,6 +79,21 @@ void say_worlds(const PoolSettings& pool, int32_t episodes) {
                  episodes);
 }
 
+void say_budget(const PoolSettings& pool, const std::vector<std::string>& limits) {
+  bool budget = false;
+  for (const auto& [key, value] : pool.options) {
+    budget |= same_name(key, "budget") && !same_name(value, "none");
+    if (same_name(key, "limit") || same_name(key, "limit_range")) return;
+  }
+  for (const std::string& text : limits) {
+    const size_t sign = text.find('=');
+    if (budget && (sign == text.npos || same_name(text.substr(0, sign), "cost")))
+      std::fprintf(
+          stderr, "--cost-limit %s: option budget has a limit of its own, which stays; give --set limit=%s\n",
+          text.c_str(), text.substr(sign + 1).c_str());
+  }
+}
+
 CLI::Option* add_pool_flags(CLI::App& command, PoolSettings& pool, const char* task_help) {
   CLI::Option* task = add_task_flag(command, pool.task, "--task,--env-id", task_help);
   add_envs_flag(command, pool);

@@ -68,6 +68,8 @@ void apply_sets(const std::vector<std::string>& sets, PoolSettings& pool, AgentS
 
 // Says so where more worlds were asked for than there are episodes, of which each is played in one.
 void say_worlds(const PoolSettings& pool, int32_t episodes);
+// Says so where texts of --cost-limit leave the limit of option `budget` as it is.
+void say_budget(const PoolSettings& pool, const std::vector<std::string>& limits);
 
 // Makes the worlds, or the agent for them; Usage when a name or a value is wrong.
 redman::Pool make_pool(const PoolSettings& settings, int32_t autoreset);

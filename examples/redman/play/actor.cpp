@@ -61,7 +61,10 @@ bool has_ending(const std::string& word, const std::string& ending) {
 ActorChoice choose_actor(const std::string& word, const std::string& task) {
   ActorChoice choice;
   std::string own = task;
-  if (read_trained_word(word, &own)) return choose_actor(trained_policy(own));
+  if (read_trained_word(word, &own)) {
+    if (own.empty()) throw Usage("--policy trained: it is not known of which task; give trained:TASK");
+    return choose_actor(trained_policy(own));
+  }
   PlanWord plan;
   if (read_plan_word(word, &plan)) {
     if (!plan.policy.empty()) choice = choose_actor(plan.policy, task);
