@@ -15,9 +15,9 @@ asan|memory and undefined behaviour, by GCC's sanitizers|memory, parsers
 tsan|races, by GCC's ThreadSanitizer, in the tests that start threads|threads
 valgrind|examples, `lib/base` and the contract of the ABI under valgrind|memory
 tidy|clang-tidy 14|new files
-halves|each half builds, passes and installs without the other|the ABI, CMake
-small|what the library takes where there is little, beside its table|memory, dependencies
-budget|exports, bytes, dependencies, instructions of a start, steps and seconds of builds beside cmake/budget.txt|dependencies, start, CMake
+halves|the simulator and the learner are each built, tested and installed without the other|the ABI, CMake
+small|memory, stack and program size of a build for size, compared with the table of examples/small|memory, dependencies
+budget|exported names, file sizes, dependencies, instructions at program start and build time, compared with the bounds in cmake/budget.txt|dependencies, start, CMake
 clang|the recorded hashes by clang 14 at -O3|arithmetic
 libc++|the recorded hashes by clang 14 with libc++|arithmetic, standard headers
 arm64 [all]|the recorded hashes on 64-bit ARM under qemu; `all`: also the tests that take half an hour there|arithmetic

@@ -155,7 +155,7 @@ class Cpq : public Sac {
 
 constinit const AlgoRow kCpq = replay_row<Cpq>(
     "cpq",
-    "Q-learning to which what is not safe or not recorded is worth nothing, from a data set (Xu et al. 2022)",
+    "Q-learning from a data set that gives no value to unsafe and to unrecorded actions (Xu et al. 2022)",
     kCpqRows, Costs::kAny);
 
 }  // namespace rdm

@@ -93,6 +93,9 @@ Trainer begin_run(TrainFlags flags, const Ranks* ranks) {
     throw Usage("these flags need a teacher: give --from");
   }
   give_eyes(run.agent, run.pool);
+  if (ranks && !has_option(run.agent.algo, "blocks"))
+    throw Usage("--ranks: " + run.agent.algo +
+                " learns in one process; only algorithms without a replay memory learn in several");
   if (ranks) give_blocks(run);
   run.own = own_files(task_at(find_task(run.pool.task)).name);
   Trainer trainer(run, ranks);  // a wrong value throws here or below, before there is a folder

@@ -22,8 +22,9 @@
  *     argument and its range.
  *   - Handles are made through `out` and ended by a void destroy function that takes NULL.
  *   - A pool or an agent may be used by one thread at a time, whichever it is; the _cancel and
- *     _error functions by any thread at any time. A policy never changes and may be shared by
- *     threads. Functions without a handle may be called by any number of threads.
+ *     _error functions by any thread at any time. A policy may be shared by threads: it changes by
+ *     rdm_policy_update_from alone. Functions without a handle may be called by any number of
+ *     threads.
  *   - Only one call at a time may change a pool, agent, planner, recording or map. While none does,
  *     any number of calls that take it as `const` may read it (an agent excepted). A call that is
  *     made while another one is in progress returns STATE and does nothing, be it from a second

@@ -50,9 +50,9 @@ RDM_API rdm_result rdm_project(const float *normals, const float *bounds, size_t
  *   rdm_shield_config_init(&c, sizeof c);
  *   c.pool = pool;  c.policy = policy;
  *   if (rdm_shield_create(&shield, &c)) puts(rdm_last_error());
- *   for (...) {
+ *   for (...) { // each step of this pool is one decision: its option action_repeat is the policy's
  *     rdm_policy_act(policy, b.obs, n, NULL, b.action, scratch, bytes);
- *     rdm_shield_act(shield, pool, NULL, b.action, b.action);
+ *     if (rdm_shield_act(shield, pool, NULL, b.action, b.action)) puts(rdm_shield_error(shield));
  *     rdm_pool_step(pool);
  *   }
  *   rdm_shield_destroy(shield);

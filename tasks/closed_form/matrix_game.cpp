@@ -102,6 +102,7 @@ constexpr auto kDefaults = join_defaults(kKnownLearner, {{"hidden", ""},
 }  // namespace
 
 constinit const TaskInfo kMatrixGame = task_info<MatrixGame, kRows, kCosts, kSampledCameras, kDefaults>(
-    "matrix_game", nullptr, "a game of two who observe half each and want the same; the optimum is known");
+    "matrix_game", nullptr,
+    "a game of two players who share the reward and each observe half of the state; the optimum is known");
 
 }  // namespace rdm

@@ -2,7 +2,9 @@
 goes on from a state with the same bytes, and says what is wrong."""
 import copy
 import json
+import os
 import pickle
+import subprocess
 import unittest
 
 import numpy as np
@@ -11,6 +13,7 @@ import redman
 from redman import gym
 from same import same, shaped
 
+TOOL = os.environ.get("REDMAN_TOOL", "")
 TASK = "hand_over_safe_joint"
 HELD = {"action_repeat": 4}
 NOWHERE = {"start_finger": "paper", "window.ff2.low": 80, "window.ff2.high": 85}  # of safe_finger: no start is within it
@@ -362,6 +365,16 @@ class Evaluations(unittest.TestCase):
         self.assertTrue(same(one.costs, held.costs))
         self.assertTrue(same(one.lengths, held.lengths))
 
+    @unittest.skipUnless(TOOL, "no tool")
+    def test_it_has_the_figures_of_the_command(self):
+        e = redman.evaluate("trained", TASK, episodes=6, shield=True)
+        said = subprocess.run([TOOL, "eval", "--task", TASK, "--policy", "trained", "--shield", "predict", "--episodes", "6", "--json"],
+                              check=True, capture_output=True, text=True)
+        theirs = json.loads(said.stdout)
+        self.assertEqual([theirs[name] for name in ("return_mean", "decisions", "interventions", "unproven", "violating_steps")],
+                         [e.return_mean, e.decisions, e.interventions, 0, e.violating_steps])
+        self.assertGreater(e.interventions, 0)
+
     def test_what_is_no_number_ends_an_episode_there_too(self):
         def play(obs):
             return np.full((len(obs), 40), np.nan)
@@ -371,8 +384,8 @@ class Evaluations(unittest.TestCase):
 
     def test_what_is_wrong_is_said(self):
         with self.assertRaisesRegex(redman.StateError, "unproven=least"):
-            redman.evaluate("zero", "hand_over_safe_finger", episodes=2, options=NOWHERE, shield=True)
-        e = redman.evaluate("zero", "hand_over_safe_finger", episodes=2, options=NOWHERE, shield={"unproven": "least"})
+            redman.evaluate("zero", "hand_over_safe_finger", episodes=2, options=NOWHERE, shield={"unproven": "error"})
+        e = redman.evaluate("zero", "hand_over_safe_finger", episodes=2, options=NOWHERE, shield=True)
         self.assertGreater(e.violating_steps, 0)
         self.assertEqual(e.decisions, e.interventions)
         for shield, policy, words in ((None, "trained", "shield_policy: .* there is none"), (3, None, "shield: it must be True, or a dict"),

@@ -86,5 +86,6 @@ refused() {
 refused 'neither a number from 1 to 256 nor mpi' --ranks none
 refused 'neither a number from 1 to 256 nor mpi' --ranks 0
 refused '3 does not divide the number of worlds, 16' --ranks 3 --envs 16
+refused 'sac learns in one process' --ranks 2 --algo sac
 refused 'is not the number of ranks, 4, times a power of two' --ranks 4 --envs 6000 --set blocks=6
 exit $failed

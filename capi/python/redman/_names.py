@@ -21,9 +21,14 @@ WORDS = {
     "lambda_lr": "multiplier_lr", "obs_normalize": "normalize_obs"}
 
 
+def folded(name: str) -> str:
+    """As the library compares names: case is ignored, and "-" equals "_"."""
+    return name.lower().replace("-", "_")
+
+
 def meant(name: str, known: Iterable[str]) -> str:
     """The known name that another library's word stands for; "" for none."""
-    own = WORDS.get(name.lower().replace("-", "_"), "")
+    own = WORDS.get(folded(name), "")
     return own if own in set(known) else ""
 
 

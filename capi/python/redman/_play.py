@@ -18,7 +18,7 @@ from ._error import ArgumentError, NotFoundError
 from ._html import number, pair, share, table
 from ._library import all_cores
 from ._limits import CostLimits, each_cost
-from ._names import keywords, nearest
+from ._names import folded, keywords, nearest
 from ._options import Options
 from ._own_costs import Costs, Own, RowFunction
 from ._policy import Backup, Origin, Policy
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from ._agent import Agent
     from ._run import Run
 
+_PLAYED = {"choose": "best", "unproven": "least"}  # options of a shield where nobody learns, as the command sets them
 # What ends an episode, and what goes on: bits of Pool.status (redman.h, RDM_STATUS_*) by their names in results.
 _END_FLAGS = {"diverged": 2, "bad_actions": 4, "task_failed": 8}
 _STEP_FLAGS = {"contacts_left_out": 1, "unconverged": 16, "slowed": 32}
@@ -383,10 +384,6 @@ def _of_model(model: Any) -> _Judged:
                    options=pool._config["options"])
 
 
-def _folded(key: str) -> str:
-    return key.lower().replace("-", "_")
-
-
 @keywords(aliases={"envs": "num_envs", "n_envs": "num_envs", "num_threads": "threads", "cost_limit": "cost_limits",
                    "num_episodes": "episodes", "n_episodes": "episodes", "n_eval_episodes": "episodes", "policy": "player",
                    "model": "player", "env_id": "task", "env": "task"},
@@ -418,8 +415,9 @@ def evaluate(player: Player, task: Optional[TaskName] = None, episodes: int = 10
         redman.evaluate("trained", "ball_run", costs={"fast": lambda rows: rows.speed("velocity") > 2}, cost_limits=20)
 
     shield: a redman.Shield checks every decision; True, or a dict of its options, budgets, seed and threads. Its first
-    backup is shield_policy, or the policy itself. When nothing keeps the budgets in a world, StateError is raised; with
-    shield={"unproven": "least"} such steps are counted in violating_steps instead.
+    backup is shield_policy, or the policy itself. As in `redman eval`, the options choose=best and unproven=least hold unless
+    others are given: when nothing keeps the budgets in a world, the action that exceeds them least runs, and steps that cost
+    are counted in violating_steps; with shield={"unproven": "error"} StateError is raised.
     """
     if episodes < 1:
         raise ArgumentError(f"episodes: {episodes} is less than 1")
@@ -434,22 +432,22 @@ def evaluate(player: Player, task: Optional[TaskName] = None, episodes: int = 10
     own: Mapping[str, Any] = {}
     functions = Own.wanted(reward, costs)
     usual: Optional[Mapping[str, float]] = None  # limits of the run
-    if known is not None and _folded(chosen) == _folded(known):
+    if known is not None and folded(chosen) == folded(known):
         own = judged.options
-        if origin is not None and _folded(origin.task) == _folded(chosen):
+        if origin is not None and folded(origin.task) == folded(chosen):
             own = origin.options
             usual = origin.cost_limits
             magnitudes = origin.magnitudes if magnitudes is None else magnitudes
             if origin.own is not None:
                 functions = origin.own if functions is None else functions
-    given_options = {_folded(key) for key in options or {}}
-    laid = {key: value for key, value in own.items() if _folded(key) not in given_options}
+    given_options = {folded(key) for key in options or {}}
+    laid = {key: value for key, value in own.items() if folded(key) not in given_options}
     laid.update(options or {})
     if isinstance(judged.player, Policy) and center is not None:
         raise ArgumentError("center: it cannot be given with a policy of redman, whose actions need no center")
     repeat = judged.action_repeat if action_repeat is None else action_repeat
     if repeat is not None and "action_repeat" not in given_options:
-        laid = {key: value for key, value in laid.items() if _folded(key) != "action_repeat"}
+        laid = {key: value for key, value in laid.items() if folded(key) != "action_repeat"}
         laid["action_repeat"] = 0 if repeat == "task" else repeat
     center = judged.center if center is None else center
     worlds = min(num_envs, episodes)
@@ -477,7 +475,7 @@ def evaluate(player: Player, task: Optional[TaskName] = None, episodes: int = 10
     else:
         held = steps // pool.spec.action_repeat
     with pool:
-        guard = shield_of(pool, shield, shield_policy, held)
+        guard = shield_of(pool, shield, shield_policy, held, _PLAYED)
         pool.reset()
         played = play(pool, player, episodes, bool(magnitudes), steps, center_of(pool, center), guard, functions)
         counts = {} if guard is None else {"decisions": guard.stats.decisions, "interventions": guard.interventions}
@@ -487,7 +485,7 @@ def evaluate(player: Player, task: Optional[TaskName] = None, episodes: int = 10
 
 def singly(options: Mapping[str, Any]) -> dict[str, Any]:
     """The same options with single control steps."""
-    return {**{key: value for key, value in options.items() if _folded(key) != "action_repeat"}, "action_repeat": 1}
+    return {**{key: value for key, value in options.items() if folded(key) != "action_repeat"}, "action_repeat": 1}
 
 
 def summary(played: Sequence[dict[str, Any]], limits: Sequence[Optional[float]], violating_steps: int, names: Sequence[str] = (),
@@ -543,15 +541,15 @@ def episode_of(policy: Policy, task: Optional[TaskName] = None, *, seed: int = 0
     laid: dict[str, Any] = {}
     limits: Optional[Mapping[str, float]] = None
     own = None
-    if origin is not None and _folded(origin.task) == _folded(name):
+    if origin is not None and folded(origin.task) == folded(name):
         laid, limits, own = dict(origin.options), origin.cost_limits, origin.own
-    given_options = {_folded(key) for key in options or {}}
-    laid = singly({**{key: value for key, value in laid.items() if _folded(key) not in given_options}, **(options or {})})
+    given_options = {folded(key) for key in options or {}}
+    laid = singly({**{key: value for key, value in laid.items() if folded(key) not in given_options}, **(options or {})})
     with Pool(name, 1, seed, autoreset="off", options=laid) as pool:
         if own is not None:
             own.ready(pool)
         if shield and shield_policy is None and not policy.info.num_points:
             shield_policy = policy
-        guard = shield_of(pool, shield, shield_policy, policy.info.action_repeat)
+        guard = shield_of(pool, shield, shield_policy, policy.info.action_repeat, _PLAYED)
         pool.reset()
         return played(pool, policy, actor=policy._word, limits=limits, own=own, steps=steps, shield=guard)

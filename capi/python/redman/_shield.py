@@ -15,7 +15,7 @@ from ._actor import on_task
 from ._error import ArgumentError, UsageError
 from ._library import Handle, assign, bytes_of, check, filled, int32, lib, sized
 from ._limits import CostLimits, each_cost
-from ._names import Hinted, keywords
+from ._names import Hinted, folded, keywords
 from ._options import Options, Value, read_settings, settings_of
 from ._policy import Backup, Policy, policy_of
 from ._pool import Pool
@@ -280,14 +280,17 @@ def project(normals: Any, bounds: Any, action: Any) -> FloatArray:
     return out
 
 
-def shield_of(pool: Pool, wanted: Shielding, policy: Optional[Backup], steps: int = 1) -> Optional[Shield]:
-    """The shield for the shield= argument of an environment or an evaluation."""
+def shield_of(pool: Pool, wanted: Shielding, policy: Optional[Backup], steps: int = 1,
+              played: Optional[Mapping[str, Value]] = None) -> Optional[Shield]:
+    """The shield for the shield= argument of an environment or, with the options `played` unless others are given, of an evaluation."""
     if wanted is None or wanted is False:
         if policy is not None:
             raise ArgumentError("shield_policy: it is the backup of a shield, and there is none: give shield=True too")
         return None
     if wanted is not True and not isinstance(wanted, Mapping):
         raise UsageError(f"shield: it must be True, or a dict of options, budgets, seed and threads, not {wanted!r}")
-    options = {} if wanted is True else dict(wanted)
-    own = {name: options.pop(name) for name in ("budgets", "seed", "threads") if name in options}
+    options: dict[str, Value] = {} if wanted is True else dict(wanted)
+    said = {folded(key) for key in options}
+    options.update((key, value) for key, value in (played or {}).items() if key not in said)
+    own: dict[str, Any] = {name: options.pop(name) for name in ("budgets", "seed", "threads") if name in options}
     return Shield(pool, policy, steps=steps, options=options, **own)

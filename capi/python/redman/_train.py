@@ -17,7 +17,7 @@ from ._files import MOST_TASK, read_whole
 from ._imported import path_of
 from ._library import all_cores, whole
 from ._limits import CostLimits
-from ._names import keywords
+from ._names import folded, keywords
 from ._options import Given, Options, Value
 from ._own_costs import Costs, Own, RowFunction
 from ._own_files import load_kept
@@ -29,7 +29,7 @@ from ._run import Run
 from ._run_folder import FolderPath, RunFolder, read_config
 from ._shield import Shielding
 from ._teacher import Teach, Teacher, eyes_of
-from ._trainer import Settings, Trainer, folded, limit_texts, shield_word, split_options
+from ._trainer import Settings, Trainer, limit_texts, shield_word, split_options
 from .callbacks import Callbacks, Calls, View
 
 _MOST_STEPS = 1 << 53  # what a float counts exactly
@@ -263,6 +263,8 @@ _MOST_BLOCKS, _LEAST_BLOCKS, _BLOCK_WORLDS = 64, 4, 16
 def _give_blocks(settings: Settings) -> None:
     """Sets the option blocks as `redman train --ranks` does: the same for any number of ranks, so that they learn the same.
     Blocks of fewer worlds leave lanes of the engine empty; fewer blocks leave nothing for ranks to share."""
+    if "blocks" not in _discovery.algo(settings.algo).options:
+        raise UsageError(f"ranks: {settings.algo} learns in one process; only algorithms without a replay memory learn in several")
     if "blocks" in (folded(key) for key, _ in settings.of_algo):
         return
     blocks, envs = 1, settings.envs

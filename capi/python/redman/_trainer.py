@@ -23,7 +23,7 @@ from ._error import ArgumentError, FormatError, NotFoundError, StateError, Unsup
 from ._library import check, encoded, lib
 from ._limits import CostLimits, each_cost
 from ._meter import Meter
-from ._names import nearest
+from ._names import folded, nearest
 from ._options import Given, Options, Value, settings_texts, shown
 from ._own_costs import Own
 from ._paths import named_options
@@ -47,10 +47,6 @@ _LOST = 2 | 4 | 8  # bits of an episode's status that make it no measurement
 _WORLDS_SEED = 7_000_000  # worlds that Training.set made draw from the run's seed + this + the epoch
 
 Pairs = Sequence["tuple[str, Value]"]
-
-
-def folded(key: str) -> str:
-    return key.lower().replace("-", "_")
 
 
 @dataclass

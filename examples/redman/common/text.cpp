@@ -144,7 +144,14 @@ std::string Table::text() const {
 std::string Table::markdown() const {
   std::string out;
   const auto line = [&](const std::vector<std::string>& row) {
-    for (const auto& cell : row) out += "| " + cell + ' ';
+    for (const auto& cell : row) {
+      out += "| ";
+      for (size_t i = 0; i < cell.size(); ++i) {
+        if (cell[i] == '|' && (i == 0 || cell[i - 1] != '\\')) out += '\\';  // else it would end the cell
+        out += cell[i];
+      }
+      out += ' ';
+    }
     out += "|\n";
   };
   line(header_);
