@@ -57,7 +57,8 @@ void P3o::read_live() {
 
 void P3o::begin_epoch(const JudgedCosts& costs, int32_t epoch) {
   Ppo::begin_epoch(costs, epoch);
-  if (epoch > 1) kappa_ = std::min(kappa_ * penalty_.growth, penalty_.max);
+  // a penalty that begins above the bound of its growth stays
+  if (epoch > 1) kappa_ = std::max(kappa_, std::min(kappa_ * penalty_.growth, penalty_.max));
   for (int32_t i = 0; i < resolved().num_limited; ++i) violation_[i] = violation(costs, i);
 }
 

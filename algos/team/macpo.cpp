@@ -1,5 +1,5 @@
-// MACPO (Gu et al. 2023, "Safe multi-robot reinforcement learning for motion control", algorithm 1): the groups of a
-// team take CPO's step one after the other, in an order that is drawn in each epoch.
+// MACPO (Gu et al. 2023, "Safe multi-agent reinforcement learning for multi-robot control"): the groups of a team
+// take CPO's step one after the other, in an order that is drawn in each epoch.
 //
 //   max over theta_i of E[M rho_i A_r]   subject to   J_c + E[M rho_i A_c] <= d,   KL(old_i || new_i) <= delta,
 //

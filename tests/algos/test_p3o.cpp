@@ -55,6 +55,14 @@ TEST(P3o, KappaGrowsToItsBound) {
   }
 }
 
+TEST(P3o, AKappaThatBeginsAboveTheBoundOfItsGrowthStays) {
+  AgentSetup s = bandit("p3o");
+  s.with("cost_limit", "6").with("penalty", "8").with("penalty_growth", "2").with("penalty_max", "5");
+  Epoch e;
+  play_bandit(s, 3, &e);
+  EXPECT_EQ(e.multiplier[0], 8);
+}
+
 namespace {
 
 void expect_finite_difference(AgentSetup s) {
