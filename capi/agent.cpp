@@ -190,7 +190,7 @@ rdm_result rdm_agent_create(rdm_agent** out, const rdm_agent_config* c) {
 }
 
 rdm_result rdm_agent_create_ranked(rdm_agent** out, const rdm_agent_config* c, const rdm_ranks* ranks) {
-  const rdm_result r = call([&] { need(ranks, "ranks"); });
+  const rdm_result r = call_with(c, [&] { need(ranks, "ranks"); });
   return r == RDM_OK ? create_agent(out, c, ranks) : r;
 }
 
@@ -242,8 +242,6 @@ rdm_result rdm_agent_act_points(rdm_agent* a, const float* obs, const rdm_points
 rdm_result rdm_agent_forget(rdm_agent* a, int32_t mode, const uint8_t* mask) {
   return call_on(a, [&] {
     need_mode(mode);
-    for (int32_t i = 0; mask && i < a->agent->config().num_envs; ++i)
-      if (mask[i] > 1) fail(Code::kArgument, "mask: row %d is %d, neither 0 nor 1", i, int32_t{mask[i]});
     a->agent->forget(mode == RDM_ACT_MEAN, mask);
   });
 }

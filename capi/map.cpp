@@ -53,6 +53,11 @@ void need_points(const float* points, size_t count, const char* name) {
   if (count > SIZE_MAX / 16) fail(Code::kRange, "count: %zu is too large", count);
 }
 
+void need_finite_points(const float* points, size_t count) {
+  for (size_t i = 0; i < 3 * count; ++i)
+    if (!std::isfinite(points[i])) fail(Code::kArgument, "points: point %zu is not finite", i / 3);
+}
+
 MapFormat format_of(const char* path) {
   const size_t n = std::strlen(path);
   if (n >= 3 && same_name(path + n - 3, ".bt")) return MapFormat::kBinary;
@@ -146,6 +151,7 @@ rdm_result rdm_map_scan(rdm_map* m, rdm_pool* p, int32_t env, const char* camera
     Vector<float> depth(pixels), points;
     Vector<int32_t> segmentation(pixels);
     const int32_t count = gather_shapes(p->pool->world(env), p->shapes);
+    for (size_t i = 0; i < num_skip; ++i) need_index(skip[i], count, "skip");
     render(p->shapes, count, eye, {w, h, nullptr, depth.data(), segmentation.data()}, {}, p->raycast);
     points.reserve(3 * pixels);
     for (size_t i = 0; i < pixels; ++i) {
@@ -165,6 +171,7 @@ rdm_result rdm_map_get_probabilities(const rdm_map* m, const float* points, size
   return call_on(m, [&] {
     need_points(points, count, "points");
     if (count > 0) need(probability, "probability");
+    need_finite_points(points, count);
     m->map->query(points, count, probability);
   });
 }
@@ -220,6 +227,7 @@ rdm_result rdm_map_get_distances(const rdm_map* m, const float* points, size_t c
   return call_on(m, [&] {
     need_points(points, count, "points");
     if (count > 0) need(distance, "distance");
+    need_finite_points(points, count);
     if (!(most > 0 && most <= 1e6f))
       fail(Code::kRange, "most: %g is outside (0, 1e6]", static_cast<double>(most));
     for (size_t i = 0; i < count; ++i)

@@ -607,7 +607,7 @@ void OwnTask::take_cameras() {
     }
     if (!finite(spec.eye) || !finite(spec.target) || !(norm(spec.eye - spec.target) > 0))
       fail(Code::kArgument, "def.cameras[%d]: eye and target of %s are the same, or not finite", i, c.name);
-    if (!(spec.fov_y > 0.01 && spec.fov_y < 3))
+    if (!(c.fov_y >= 0.01f && c.fov_y <= 3))
       fail(Code::kRange, "def.cameras[%d].fov_y: %g of %s is outside [0.01, 3]", i, spec.fov_y, c.name);
     if (!finite(up)) fail(Code::kArgument, "def.cameras[%d].up of %s is not finite", i, c.name);
     if (norm(up) > 0) spec.up = normalized(up);

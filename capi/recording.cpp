@@ -100,7 +100,9 @@ rdm_result rdm_recording_create(rdm_recording** out, const rdm_recording_config*
     spec.num_points = in.num_points;
     if (in.point_color != 0 && in.point_color != 1)
       fail(Code::kRange, "config.point_color: %d is not 0 or 1", in.point_color);
-    spec.point_color = in.point_color && in.num_points > 0;
+    if (in.point_color && in.num_points == 0)
+      fail(Code::kArgument, "config.point_color: there are no points with num_points 0");
+    spec.point_color = in.point_color != 0;
     const char* task = in.task ? in.task : "";
     if (std::strlen(task) >= sizeof spec.task || !is_clean_text(task))
       fail(Code::kRange, "config.task: longer than %zu characters, or not one line of UTF-8",
@@ -297,8 +299,9 @@ rdm_result rdm_recording_begin_step(rdm_recording* r, const rdm_pool* p, const f
     const int32_t n = pool.config().num_envs;
     const auto obs = static_cast<size_t>(x.spec().obs_dim),
                actions = static_cast<size_t>(x.spec().action_dim);
-    const auto taken = [&](int32_t i) { return (!mask || mask[i]) && !resets(pool, i); };
+    const auto taken = [&](int32_t i) { return (!mask || mask[i]) && !resets(pool, i) && pool.running(i); };
     for (int32_t i = 0; i < n; ++i) {
+      if ((!mask || mask[i]) && !pool.begun(i)) fail(Code::kState, "pool: world %d was not reset yet", i);
       if (!taken(i)) continue;
       check_rows("action", b.action, i, actions);
       check_rows("label", label, i, actions);

@@ -353,19 +353,15 @@ rdm_result rdm_robot_get_poses(int32_t robot, const double* q, rdm_pose* links, 
     const RobotRef ref(robot);
     const Robot& r = *ref;
     need_finite(q, r.links.count, "q");
+    if (flange && r.flange == kNoLink) fail(Code::kUnsupported, "robot %s has no flange", r.name);
+    if (palm && r.palm == kNoLink) fail(Code::kUnsupported, "robot %s has no palm", r.name);
     Pose X_RL[kMaxRobotLinks];
     link_poses(r, q, X_RL);
     for (int32_t i = 0; i < r.links.count; ++i) links[i] = to_abi(X_RL[i]);
-    if (flange) {
-      if (r.flange == kNoLink) fail(Code::kUnsupported, "robot %s has no flange", r.name);
-      *flange = to_abi(flange_pose(r, q));
-    }
+    if (flange) *flange = to_abi(flange_pose(r, q));
     for (int32_t i = 0; tips && i < r.tips.count; ++i)
       put(X_RL[r.tips[i].link] * r.tips[i].p_L, tips + 3 * i);
-    if (palm) {
-      if (r.palm == kNoLink) fail(Code::kUnsupported, "robot %s has no palm", r.name);
-      *palm = to_abi(palm_frame(r, q));
-    }
+    if (palm) *palm = to_abi(palm_frame(r, q));
   });
 }
 

@@ -20,6 +20,8 @@ void check_match(const AgentConfig& a, int32_t repeat, const Pool& p) {
   same(a.ranks.count, p.ranks(), "ranks");
   if (p.config().autoreset == Autoreset::kOff)
     fail(Code::kState, "pool: its autoreset is off, so a rollout would stop at the first end of an episode");
+  for (int32_t i = 0; i < p.config().num_envs; ++i)
+    if (!p.begun(i)) fail(Code::kState, "pool: world %d was not reset yet", i);
   if (repeat % p.repeat() != 0)
     fail(Code::kArgument, "action_repeat: the agent's, %d, is not a multiple of the pool's, %d", repeat,
          p.repeat());

@@ -199,6 +199,7 @@ rdm_result rdm_shield_act(rdm_shield* s, const rdm_pool* pool, const uint8_t* ma
 rdm_result rdm_shield_get_row(const rdm_shield* s, const rdm_pool* pool, int32_t env, rdm_shield_row* io) {
   return call_on(s, [&] {
     const Use use(pool);
+    s->shield->check_pool(*pool->pool);
     need_index(env, s->shield->num_envs(), "env");
     const ShieldRow& r = s->shield->row(env);
     rdm_shield_row out{};
@@ -235,6 +236,7 @@ rdm_result rdm_shield_get_plan(const rdm_shield* s, const rdm_pool* pool, int32_
   return call_on(s, [&] {
     const Use use(pool);
     need(size, "size");
+    s->shield->check_pool(*pool->pool);
     need_index(env, s->shield->num_envs(), "env");
     int32_t decisions = 0;
     const float* rows = s->shield->plan(*pool->pool, env, &decisions);

@@ -32,6 +32,11 @@ size_t doubles_of(int32_t what) {
   }
 }
 
+bool can_set(int32_t what) {
+  return what == RDM_QUANTITY_TARGET || what == RDM_QUANTITY_BASE || what == RDM_QUANTITY_BODY ||
+         (what >= RDM_QUANTITY_JOINT && what <= RDM_QUANTITY_LINK_PUSH);
+}
+
 double* put_pose(const rdm_pose& pose, double* x) {
   x = std::copy_n(pose.p, 3, x);
   return std::copy_n(pose.q, 4, x);
@@ -137,12 +142,12 @@ rdm_result each(rdm_world** worlds, size_t n, size_t count, const double* x, F&&
 rdm_result rdm_world_get_many(rdm_world** worlds, size_t n, int32_t what, int32_t first, size_t count,
                               double* x) {
   const size_t width = doubles_of(what);
+  if (what < RDM_QUANTITY_Q || what > RDM_QUANTITY_TOUCH)
+    return call_inside([&] { fail(Code::kRange, "what: %d cannot be read, only 0 to 9 can", what); });
   return each(worlds, n, count, x, [&](const rdm_world* world, size_t row) {
     double* const at = x + row * count * width;
     if (what >= RDM_QUANTITY_Q && what <= RDM_QUANTITY_TORQUE)
       return get_joints(world, what, first, count, at);
-    if (what < RDM_QUANTITY_Q || what > RDM_QUANTITY_TOUCH)
-      fail(Code::kRange, "what: %d cannot be read, only 0 to 9 can", what);
     for (size_t k = 0; k < count; ++k) get_one(world, what, first + static_cast<int32_t>(k), at + k * width);
   });
 }
@@ -150,6 +155,9 @@ rdm_result rdm_world_get_many(rdm_world** worlds, size_t n, int32_t what, int32_
 rdm_result rdm_world_set_many(rdm_world** worlds, size_t n, int32_t what, int32_t first, size_t count,
                               const double* x) {
   const size_t width = doubles_of(what);
+  if (!can_set(what))
+    return call_inside(
+        [&] { fail(Code::kRange, "what: %d cannot be set, only 2, 5, 6 and 10 to 15 can", what); });
   return each(worlds, n, count, x, [&](rdm_world* world, size_t row) {
     const double* const at = x + row * count * width;
     switch (what) {
@@ -170,7 +178,7 @@ rdm_result rdm_world_set_many(rdm_world** worlds, size_t n, int32_t what, int32_
           set_one(world, what, first + static_cast<int32_t>(k), at + k * width);
         return;
       default:
-        fail(Code::kRange, "what: %d cannot be set, only 2, 5, 6 and 10 to 15 can", what);
+        return;
     }
   });
 }

@@ -30,9 +30,9 @@ static rdm_result build(void* user, rdm_scene* scene, void* instance) {
   (void)user;
   cap.pose.q[3] = cap.axis[2] = 1, cap.lower = -0.01, cap.kp = 100, cap.kd = 2, cap.effort = 2;
   cap.moment[0] = cap.moment[1] = cap.moment[2] = 1e-5;
-  rdm_robot_def_init(&press, sizeof press);
+  if (rdm_robot_def_init(&press, sizeof press) || rdm_scene_robot_init(&hand, sizeof hand))
+    return RDM_ERROR_ARGUMENT;
   press.name = "button", press.links = &cap, press.num_links = 1, press.shapes = &top, press.num_shapes = 1;
-  rdm_scene_robot_init(&hand, sizeof hand);
   hand.name = "hand", hand.pose.p[2] = 0.1, hand.pose.q[1] = 1, hand.pose.q[3] = 0;
   if (rdm_robot_find("shadow_hand", &hand.robot) || rdm_scene_add_robot(scene, &hand, &id->hand) ||
       rdm_scene_add_robot(scene, &button, NULL) || rdm_scene_add_body(scene, &cup, &id->cup) ||
@@ -95,7 +95,7 @@ rdm_result redman_plugin(void) { /* the tool calls it of a library that is given
                                          {"cup", "m", 3, 0, 0, 0}};
   static const rdm_cost_def cost = {"touch", "the hand touches the cup; raw: contact force, N", 5};
   rdm_task_def def;
-  rdm_task_def_init(&def, sizeof def);
+  if (rdm_task_def_init(&def, sizeof def)) return RDM_ERROR_ARGUMENT;
   def.name = "press", def.summary = "press a button; cost: touching the cup beside it";
   def.fields = fields, def.num_fields = 3, def.costs = &cost, def.num_costs = 1;
   def.action_dim = COMMANDS, def.obs_limit = 5, def.instance_bytes = sizeof(ids), def.max_steps = 60;
@@ -116,7 +116,8 @@ int main(int argc, char** argv) {
            rdm_agent_config_for_pool(&l, pool) || rdm_agent_create(&agent, &l);
   for (int i = 0; !status && i < (argc > 1 ? atoi(argv[1]) : 5); ++i) {
     status = rdm_agent_rollout(agent, pool, &e) != RDM_OK;
-    printf("epoch %2d: return %6.2f, cost %5.2f, success %.2f\n", i + 1, e.ret, e.cost[0], e.success_rate);
+    if (!status)
+      printf("epoch %2d: return %6.2f, cost %5.2f, success %.2f\n", i + 1, e.ret, e.cost[0], e.success_rate);
   }
   if (status) fprintf(stderr, "07_own_task: %s\n", rdm_last_error());
   rdm_agent_destroy(agent);

@@ -29,14 +29,25 @@ int main(int argc, char** argv) {
     return 1;
   }
   for (int32_t i = 0; i < rdm_import_note_count(import); ++i)
-    if (!rdm_import_note_at(import, i, &note) && note.kind == RDM_NOTE_DROPPED)
-      printf("line %d, left out: %s\n", (int)note.line, note.text);
-  if (rdm_robot_def_init(&hand, sizeof hand) || rdm_import_get_robot_def(import, &hand)) goto done;
+    if (!rdm_import_note_at(import, i, &note))
+      printf("line %d, %s: %s\n", (int)note.line, note.kind == RDM_NOTE_DROPPED ? "left out" : "guessed",
+             note.text);
+  if (rdm_robot_def_init(&hand, sizeof hand)) goto done;
+  if (rdm_import_get_robot_def(import, &hand)) {
+    fprintf(stderr, "08_own_robot: %s\n", rdm_import_error()); /* of another library, with texts of its own */
+    rdm_import_destroy(import);
+    return 1;
+  }
   if (rdm_robot_create(&robot, &hand)) goto done;
   printf("%s: %d joints, %d fingers\n", hand.name, (int)hand.num_links, (int)hand.num_fingers);
 
   if (rdm_pool_config_init(&w, sizeof w)) goto done;
-  snprintf(settings, sizeof settings, "hand=%s\narm=%s", hand.name, argc > 2 ? argv[2] : "ur5e");
+  if (snprintf(settings, sizeof settings, "hand=%s\narm=%s", hand.name, argc > 2 ? argv[2] : "ur5e") >=
+      (int)sizeof settings) {
+    fprintf(stderr, "08_own_robot: the names are too long\n");
+    rdm_import_destroy(import);
+    return 1;
+  }
   w.task = "grasp", w.num_envs = 64, w.settings = settings;
   if (rdm_pool_create(&pool, &w) || rdm_pool_reset(pool, NULL, NULL)) goto done;
   if (rdm_agent_config_init(&l, sizeof l) || rdm_agent_config_for_pool(&l, pool)) goto done;

@@ -117,7 +117,7 @@ static int append(rdm_recording* r, int scenes) {
     for (int step = 0, hits = 0, done = 0; step < LENGTH && !done; ++step) {
       float points[3 * POINTS], label[2], action[2];
       int16_t mm[3 * POINTS];
-      uint8_t kind[POINTS], end = 0;
+      uint8_t kind[POINTS], touched, cut;
       rdm_recording_rows rows = {.struct_size = sizeof rows};
       const scene before = s;
       look(&s, points, kind);
@@ -126,11 +126,14 @@ static int append(rdm_recording* r, int scenes) {
       for (int k = 0; k < 2; ++k)
         action[k] = label[k] + draw(-0.6f, 0.6f); /* to see what is beside its path, too */
       done = move(&s, action, &hits);
-      end = (uint8_t)(done || step == LENGTH - 1);
+      touched = (uint8_t)(done != 0);
+      cut = (uint8_t)(!done && step == LENGTH - 1);
       rows.rows = 1;
       rows.obs = before.finger;
-      rows.action = rows.label = label;
-      rows.truncated = &end;
+      rows.action = action; /* what was done; the label is what the teacher meant */
+      rows.label = label;
+      rows.terminated = &touched;
+      rows.truncated = &cut;
       rows.points = mm;
       rows.point_class = kind;
       if (rdm_recording_append(r, &rows)) return 1;

@@ -128,18 +128,6 @@ static void print_tally(const char* who, const tally* t) {
            100.0 * t->falls / t->episodes);
 }
 
-/* Writes the policy of an agent; 0 on success. */
-static int save_policy(const rdm_agent* agent, const char* path) {
-  size_t size = 0;
-  if (rdm_agent_write_policy(agent, NULL, 0, &size)) return 1;
-  void* bytes = malloc(size);
-  FILE* file = bytes && !rdm_agent_write_policy(agent, bytes, size, &size) ? fopen(path, "wb") : NULL;
-  int failed = !file || fwrite(bytes, 1, size, file) != size;
-  if (file && fclose(file)) failed = 1;
-  free(bytes);
-  return failed;
-}
-
 int main(int argc, char** argv) {
   const char* path = argc > 1 ? argv[1] : "examples/policies/ant_run.rdm";
   const int rounds = argc > 2 ? atoi(argv[2]) : 10, decisions = argc > 3 ? atoi(argv[3]) : 1000;
@@ -159,12 +147,11 @@ int main(int argc, char** argv) {
   static float label[WORLDS * ACTIONS], own[WORLDS * ACTIONS];
   int failed = 1;
 
-  rdm_pool_config_init(&config, sizeof config);
+  if (rdm_pool_config_init(&config, sizeof config) || rdm_recording_config_init(&kept, sizeof kept) ||
+      rdm_agent_config_init(&student, sizeof student) || rdm_clone_config_init(&how, sizeof how))
+    goto end;
   config.task = "ant_reach";
   config.num_envs = WORLDS;
-  rdm_recording_config_init(&kept, sizeof kept);
-  rdm_agent_config_init(&student, sizeof student);
-  rdm_clone_config_init(&how, sizeof how);
   if (rdm_policy_read_file(&walker, path) || rdm_policy_get_info(walker, &info) ||
       rdm_pool_create(&pool, &config) || rdm_pool_get_spec(pool, &spec) || rdm_pool_get_buffers(pool, &b) ||
       rdm_recording_config_for_pool(&kept, pool) || rdm_recording_create(&rows, &kept) ||
@@ -178,7 +165,11 @@ int main(int argc, char** argv) {
   }
   const size_t scratch_bytes = rdm_policy_scratch(walker, 1);
   scratch = malloc(scratch_bytes);
-  if (!scratch || rdm_pool_reset(pool, NULL, NULL)) goto end;
+  if (!scratch) {
+    fprintf(stderr, "11_teach: out of memory\n");
+    goto done;
+  }
+  if (rdm_pool_reset(pool, NULL, NULL)) goto end;
   for (int round = 0; round < rounds; ++round) {
     const int teachers = round ? WORLDS / 4 : WORLDS;
     tally by[2] = {{0, 0, 0, 0}, {0, 0, 0, 0}};
@@ -209,7 +200,7 @@ int main(int argc, char** argv) {
     printf("\n");
     fflush(stdout);
   }
-  if (argc > 4 && save_policy(agent, argv[4])) {
+  if (argc > 4 && rdm_agent_write_policy_file(agent, argv[4])) {
     fprintf(stderr, "11_teach: cannot write %s\n", argv[4]);
     goto done;
   }

@@ -70,7 +70,7 @@ Report run_data_make(DataMakeFlags flags) {
     throw Usage("--out " + printable(out) +
                 ": its name does not end in .npz; data convert makes other files of it");
   check_replaceable(out);
-  make.rows = static_cast<uint64_t>(flags.rows);
+  make.rows = static_cast<uint64_t>(whole_number(flags.rows, "--rows"));
   const auto begun = Clock::now();
   const DataSet set = make_set(make);
   write_set(set, out);

@@ -101,6 +101,7 @@ struct EvalFlags {
 };
 
 Report run_eval(EvalFlags flags) {
+  need_one_limit_each(flags.limits);
   ActorChoice choice = choose_actor(flags.policy, flags.pool.task);
   choice.shield = read_shield_word(flags.shield);
   adopt_task(choice, flags.task_given, flags.sets, flags.pool);

@@ -43,14 +43,28 @@ void adopt_set(const DataSet& set, LearnFlags& flags) {
 std::string costs_text(const rdm_learn_report& report, const std::vector<double>& limits) {
   std::string text;
   for (size_t k = 0; k < limits.size(); ++k)
-    if (limits[k] >= 0)
+    if (limits[k] >= 0 && !std::isnan(report.cost[k]))
       text += format("; expected cost %.4g of the limit %s, multiplier %.4g", report.cost[k],
                      number_text(limits[k]).c_str(), report.multiplier[k]);
   return text;
 }
 
+// Of those that the last steps had: an actor that learns now and then has none in between.
+std::string losses_text(const rdm_learn_report& report) {
+  std::string text;
+  const auto add = [&](double loss, const char* of) {
+    if (!std::isnan(loss)) text += (text.empty() ? "" : ", ") + format("%s%.4g", of, loss);
+  };
+  add(report.loss_policy, "of the policy ");
+  add(report.loss_reward_value, "of the reward ");
+  add(report.loss_cost_value, "of costs ");
+  return text;
+}
+
 Report run_learn(LearnFlags flags) {
-  check_replaceable(flags.out);
+  check_outputs({{"--out", flags.out}}, {{"--from", flags.from}});
+  const int64_t steps = whole_number(flags.steps, "--steps");
+  take_limit_from_sets(flags.sets, flags.limits);
   const DataSet set = read_set(flags.from);
   adopt_set(set, flags);
   if (has_option(flags.agent.algo, "replay_rows"))
@@ -65,14 +79,12 @@ Report run_learn(LearnFlags flags) {
   const redman::Recording recording(flags.from.c_str());
   const auto begun = Clock::now();
   auto report = redman::sized<rdm_learn_report>();
-  const auto steps = static_cast<int64_t>(flags.steps);
   for (int32_t part = 0; part < kReports; ++part) {
     const int64_t from = steps * part / kReports, to = steps * (part + 1) / kReports;
     if (from == to) continue;
     report = as_usage([&] { return redman::learn(agent, recording, to - from); });
-    std::fprintf(stderr, "%lld steps: loss %.4g, of the reward %.4g, of costs %.4g%s\n",
-                 static_cast<long long>(to), report.loss_policy, report.loss_reward_value,
-                 report.loss_cost_value, costs_text(report, limits).c_str());
+    std::fprintf(stderr, "%lld steps: loss %s%s\n", static_cast<long long>(to), losses_text(report).c_str(),
+                 costs_text(report, limits).c_str());
   }
   const double seconds = since(begun);
   redman::check(rdm_agent_write_policy_file(agent.get(), flags.out.c_str()));

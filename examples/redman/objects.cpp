@@ -116,6 +116,7 @@ Report show(const rdm_object_def& def, const ObjectFlags& flags, Json json, cons
   json["shapes"] = def.num_shapes;
   if (!flags.out.empty()) {
     const std::string written = object_text(def);
+    check_outputs({{"--out", flags.out}}, {{"the object or mesh that is read", flags.file}});
     import_object_text(written, flags.file);  // nothing is written that could not be read
     replace_file(flags.out, written);
     json["file"] = flags.out;

@@ -135,9 +135,7 @@ Figure chart_of_tasks(const std::vector<std::vector<const RunData*>>& tasks, boo
 Report run_plot(const PlotFlags& flags) {
   check_replaceable(flags.out);
   if (!flags.out_given) check_default_output(flags.out, kChartMark, "--out");
-  std::vector<RunData> runs;
-  for (const std::string& folder : flags.folders)
-    for (const std::string& path : find_runs(folder)) runs.push_back(read_run(path));
+  const std::vector<RunData> runs = read_runs(flags.folders);
   std::vector<std::vector<const RunData*>> tasks;
   for (const RunData& run : runs) {
     auto found = std::find_if(tasks.begin(), tasks.end(),

@@ -126,8 +126,9 @@ Report run_feed(const RenderFlags& flags) {
 Report run_render(RenderFlags flags) {
   read_size(flags);
   if (!flags.html.empty()) check_viewer();
-  for (const std::string& file : {flags.html, flags.glb})
-    if (!file.empty()) check_replaceable(file);
+  check_outputs(
+      {{"--out", flags.out}, {"--html", flags.html}, {"--glb", flags.glb}, {"--video", flags.video}},
+      {{"--policy", flags.policy}});
   if (!flags.feed.empty()) return run_feed(flags);
   ActorChoice choice = choose_actor(flags.policy, flags.pool.task);
   choice.shield = read_shield_word(flags.shield);

@@ -161,9 +161,7 @@ std::string with_deviation(double mean, double deviation) {
 Report run_report(const ReportFlags& flags) {
   check_replaceable(flags.html);
   if (!flags.html_given) check_default_output(flags.html, "content=\"redman\"", "--html");
-  std::vector<RunData> runs;
-  for (const std::string& folder : flags.folders)
-    for (const std::string& path : find_runs(folder)) runs.push_back(read_run(path));
+  const std::vector<RunData> runs = read_runs(flags.folders);
   std::vector<std::string> tasks;
   for (const RunData& run : runs)
     if (std::find(tasks.begin(), tasks.end(), run.task) == tasks.end()) tasks.push_back(run.task);

@@ -92,7 +92,7 @@ Report run_rollout(RolloutFlags flags) {
   const auto episodes = static_cast<size_t>(flags.episodes);
   std::unique_ptr<StepTable> table;
   std::unique_ptr<Recorder> recorder;
-  if (!flags.out.empty()) check_replaceable(flags.out);
+  check_outputs({{"--out", flags.out}, {"--record", flags.record}}, {{"--policy", flags.policy}});
   if (!flags.out.empty()) table = std::make_unique<StepTable>(pool, episodes);
   if (!flags.record.empty())
     recorder = std::make_unique<Recorder>(flags.record, pool, episodes, flags.states, flags.noise > 0);

@@ -57,6 +57,14 @@ std::vector<std::string> list_of(const std::string& list) {
   return words;
 }
 
+// A run that is asked for twice is no second sample.
+template <class T>
+void need_once(const std::vector<T>& list, const std::string& flag, const std::string& text) {
+  for (size_t i = 0; i < list.size(); ++i)
+    for (size_t k = 0; k < i; ++k)
+      if (list[i] == list[k]) throw Usage(flag + ' ' + printable(text) + ": one of them is given twice");
+}
+
 // "0..4" or "0,3,7".
 std::vector<uint64_t> read_seeds(const std::string& text) {
   std::vector<uint64_t> seeds;
@@ -71,6 +79,7 @@ std::vector<uint64_t> read_seeds(const std::string& text) {
     for (uint64_t s = first; s <= last; ++s) seeds.push_back(s);
   }
   if (seeds.empty()) throw Usage("--seeds: there is none");
+  need_once(seeds, "--seeds", text);
   return seeds;
 }
 
@@ -82,6 +91,7 @@ std::vector<std::vector<std::string>> variants_of(const std::vector<std::string>
     const auto values = list_of(equals == std::string::npos ? "" : text.substr(equals + 1));
     if (equals == 0 || values.empty())
       throw Usage("--vary " + printable(text) + ": it is not key=value,value");
+    need_once(values, "--vary", text);
     std::vector<std::vector<std::string>> next;
     for (const auto& before : all)
       for (const std::string& value : values) {
@@ -109,6 +119,8 @@ std::vector<Cell> runs_of(const SweepFlags& flags) {
   const auto variants = variants_of(flags.varied);
   if (tasks.empty()) throw Usage("--tasks: there is none");
   if (algos.empty()) throw Usage("--algos: there is none");
+  need_once(tasks, "--tasks", flags.tasks);
+  need_once(algos, "--algos", flags.algos);
   if (tasks.size() * algos.size() * variants.size() * seeds.size() > kMostRuns)
     throw Usage(format("these are more than %zu runs", kMostRuns));
   std::vector<Cell> cells;
@@ -146,7 +158,7 @@ void try_settings(const SweepFlags& flags, const std::vector<Cell>& cells) {
     run.pool.seed = c.seed;
     run.agent.algo = c.algo;
     run.limits = flags.limits;
-    run.steps = static_cast<int64_t>(flags.steps);
+    run.steps = whole_number(flags.steps, "--steps");
     try {
       apply_sets(c.sets, run.pool, &run.agent);
       Trainer(run).prepare();
@@ -168,6 +180,34 @@ Json result_of(const Cell& c) {
   }
 }
 
+// What a run of this path must have been begun with, as words of the command.
+std::vector<std::string> settings_of(const SweepFlags& flags, const Cell& c) {
+  std::vector<std::string> words = {"--task",  c.task,
+                                    "--algo",  c.algo,
+                                    "--steps", number_text(flags.steps),
+                                    "--envs",  std::to_string(flags.envs)};
+  for (const std::string& limit : flags.limits) words.insert(words.end(), {"--cost-limit", limit});
+  for (const std::string& set : c.sets) words.insert(words.end(), {"--set", set});
+  return words;
+}
+
+std::string settings_line(const SweepFlags& flags, const Cell& c) {
+  std::string line;
+  for (const std::string& word : settings_of(flags, c)) line += (line.empty() ? "" : " ") + word;
+  return line;
+}
+
+// A folder of other settings holds other runs than are asked for.
+void need_same_settings(const SweepFlags& flags, const std::vector<Cell>& cells) {
+  for (const Cell& c : cells) {
+    const std::string kept = c.path + ".sweep";
+    if (!file_exists(kept)) continue;  // not begun, or by an earlier version
+    if (const std::string before = read_file(kept), now = settings_line(flags, c); before != now)
+      throw Usage("--out " + flags.out + ": " + c.path + " was begun with " + printable(before) + ", not " +
+                  printable(now) + "; give another folder");
+  }
+}
+
 std::vector<std::string> command_of(const SweepFlags& flags, const Cell& c) {
   std::vector<std::string> words = {path_of_program(), "train", "--json"};
   const auto add = [&](const char* flag, const std::string& value) {
@@ -179,14 +219,9 @@ std::vector<std::string> command_of(const SweepFlags& flags, const Cell& c) {
     add("--steps", number_text(flags.steps));
     return words;
   }
-  add("--task", c.task);
-  add("--algo", c.algo);
   add("--seed", std::to_string(c.seed));
-  add("--steps", number_text(flags.steps));
-  add("--envs", std::to_string(flags.envs));
   add("--out", c.path);
-  for (const std::string& limit : flags.limits) add("--cost-limit", limit);
-  for (const std::string& set : c.sets) add("--set", set);
+  for (const std::string& word : settings_of(flags, c)) words.push_back(word);
   return words;
 }
 
@@ -204,12 +239,15 @@ void make_run_folders(const std::string& path) {
 }
 
 // The log of a run, with its lock; -1: another sweep trains it. File systems that know no locks are taken as they are.
-int claim(const Cell& c) {
+int claim(const SweepFlags& flags, const Cell& c) {
   make_run_folders(c.path.substr(0, c.path.rfind('/')));
   const std::string log = c.path + ".log";
   const int file = open(log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   if (file < 0) throw Failure("cannot write " + log + ": " + std::strerror(errno));
-  if (flock(file, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return file;
+  if (flock(file, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) {
+    if (!file_exists(c.path + ".sweep")) replace_file(c.path + ".sweep", settings_line(flags, c));
+    return file;
+  }
   close(file);
   return -1;
 }
@@ -258,7 +296,7 @@ Ran run_cells(const SweepFlags& flags, const std::vector<Cell>& cells) {
     while (!stopped && running.size() < jobs && next < cells.size()) {
       const Cell& c = cells[next++];
       if (!result_of(c).is_null()) continue;
-      const int log = claim(c);
+      const int log = claim(flags, c);
       if (log < 0) {
         ++ran.elsewhere;
         continue;
@@ -322,6 +360,7 @@ std::vector<SweepRow> rows_of(const std::vector<Cell>& cells) {
 Report run_sweep(const SweepFlags& flags) {
   if (flags.out.empty()) throw Usage("--out: give the folder that the runs go to");
   const std::vector<Cell> cells = runs_of(flags);
+  need_same_settings(flags, cells);
   try_settings(flags, cells);
   const Ran ran = run_cells(flags, cells);
   Table table({"task", "configuration", "runs", "return, IQM", "95% interval", "cost, IQM", "95% interval",

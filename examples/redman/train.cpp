@@ -28,23 +28,6 @@ struct TrainFlags {
   bool steps_given = false, threads_given = false, others_given = false, overwrite = false;
 };
 
-// The option cost_limit of an algorithm is the limit on column 0.
-void take_limit_from_sets(std::vector<std::string>& sets, std::vector<std::string>& limits) {
-  const auto is_limit = [](const std::string& s) {
-    return same_name(s.substr(0, s.find('=')), "cost_limit");
-  };
-  for (const std::string& s : sets)
-    if (is_limit(s) && s.find('=') != std::string::npos) limits.push_back(s.substr(s.find('=') + 1));
-  sets.erase(std::remove_if(sets.begin(), sets.end(), is_limit), sets.end());
-}
-
-int64_t whole_steps(double steps) {
-  if (!(steps >= 1 && steps <= static_cast<double>(kMostExact)) || steps != std::floor(steps))
-    throw Usage("--steps " + number_text(steps) + ": it is not a whole number of 1 .. " +
-                std::to_string(kMostExact));
-  return static_cast<int64_t>(steps);
-}
-
 // "0.7" or "0.7..0".
 void parse_shares(const std::string& text, TeachSettings& teach) {
   const size_t dots = text.find("..");
@@ -82,7 +65,7 @@ Trainer begin_run(TrainFlags flags, const Ranks* ranks) {
   }
   apply_sets(flags.sets, run.pool, &run.agent);
   if (!ranks || ranks->first()) say_budget(run.pool, run.limits);
-  run.steps = whole_steps(flags.steps);
+  run.steps = whole_number(flags.steps, "--steps");
   run.shield = read_shield_word(flags.shield);
   if (run.teach.asked()) {
     for (const Options& options :
@@ -121,7 +104,7 @@ Trainer go_on(const TrainFlags& flags, const Ranks* ranks) {
     throw Failure(
         flags.resume +
         ": its reward or its costs are functions in Python: continue it with redman.train(resume=...) there");
-  if (flags.steps_given) run.steps = whole_steps(flags.steps);
+  if (flags.steps_given) run.steps = whole_number(flags.steps, "--steps");
   if (flags.threads_given) run.pool.threads = flags.run.pool.threads;
   Trainer trainer(run, ranks);
   if (folder)
@@ -223,15 +206,19 @@ Report train_alone(const TrainFlags& flags, const Ranks* ranks) {
   trainer.run();
 
   const RunSettings& run = trainer.settings();
+  const auto costs = task_costs(find_task(run.pool.task));
+  std::vector<std::string> limits;  // as the learner has them
+  for (size_t k = 0; k < costs.size(); ++k)
+    limits.push_back(std::string(costs[k].name) + '=' + number_text(trainer.limits()[k]));
   PoolSettings settings = run.pool;
   settings.seed += Trainer::kEvalSeed;
   settings.envs = kEvalEnvs;
   settings.magnitudes = learns_magnitudes(run.agent);
   ActorChoice choice = choose_actor(trainer.folder().policy());
-  const Evaluation e = evaluate(choice, settings, run.limits, kEvalEpisodes, false);
+  const Evaluation e = evaluate(choice, settings, limits, kEvalEpisodes, false);
   choice.shield = run.shield;
   const Evaluation shielded =
-      run.shield.on ? evaluate(choice, settings, run.limits, kEvalEpisodes, false) : Evaluation{};
+      run.shield.on ? evaluate(choice, settings, limits, kEvalEpisodes, false) : Evaluation{};
   const Summary& s = e.summary;
   say_trouble(trainer.trouble(), "training");
   say_trouble(s.trouble, "evaluation");

@@ -226,7 +226,8 @@ RDM_API rdm_result rdm_agent_update_slice(rdm_agent *a, int32_t units, int32_t *
  * num_envs must agree. Where the pool has option action_repeat itself, the agent's action_repeat
  * must be a multiple of the pool's, as it is in the defaults that rdm_agent_config_for_pool sets.
  * With the agent's option cost_signal=raw the costs are sums over control steps of cost_raw where
- * that is above 0. */
+ * that is above 0. STATE for a pool that was not reset or has autoreset off, and inside a horizon;
+ * ARGUMENT where sizes or action_repeat differ; nothing changes then. io may be NULL. */
 RDM_API rdm_result rdm_agent_rollout(rdm_agent *a, rdm_pool *p, rdm_epoch *io);
 /* Async-signal-safe, from any thread: the running rollout or update returns CANCELLED. A horizon
  * that was begun by act and record is dropped when its update is called; between horizons, the next
@@ -252,7 +253,8 @@ RDM_API rdm_result rdm_agent_get_settings(const rdm_agent *a, char *text, size_t
 RDM_API rdm_result rdm_agent_tensor_at(const rdm_agent *a, int32_t i,
                                        rdm_tensor *out); /* RANGE ends the list */
 /* Copies the named tensor to out [count] or from values [count]; count must be rows * cols.
- * NOT_FOUND, RANGE. */
+ * NOT_FOUND, RANGE. Values of actor.log_std are clipped, at the next act, to what options std_min
+ * and std_max allow. */
 RDM_API rdm_result rdm_agent_get_tensor(const rdm_agent *a, const char *name, float *out,
                                         size_t count);
 RDM_API rdm_result rdm_agent_set_tensor(rdm_agent *a, const char *name, const float *values,
@@ -282,7 +284,8 @@ RDM_API rdm_result rdm_agent_read_state(rdm_agent *a, const void *bytes,
 RDM_API rdm_result rdm_checkpoint_write(const char *path, const rdm_agent *a, const rdm_pool *p,
                                         const void *note, size_t note_size);
 /* Reads it back; note [capacity] receives the note, up to that many bytes, and *note_size is its
- * size. Nothing changes on failure. */
+ * size; note may be NULL with capacity 0. With p NULL the file's pool, if any, is not read. FORMAT
+ * where p is given and the file has none. Nothing changes on failure. */
 RDM_API rdm_result rdm_checkpoint_read(const char *path, rdm_agent *a, rdm_pool *p, void *note,
                                        size_t capacity, size_t *note_size);
 

@@ -128,7 +128,8 @@ typedef struct rdm_host { /* memory, log and threads of the host, used instead o
   void (*parallel)(void *user, int32_t n, rdm_body body, void *context);
 } rdm_host;
 /* Sets process-wide hooks for handles that are made later from configs whose host is NULL; host
- * NULL: the defaults. Calls are counted. Optional. */
+ * NULL: the defaults. The first call sets them. Later ones are counted and change nothing with
+ * NULL, and are STATE with hooks, until rdm_shutdown has undone all. Optional. */
 RDM_API rdm_result rdm_init(const rdm_host *host);
 RDM_API void rdm_shutdown(void); /* undoes one rdm_init; the last one restores the default hooks;
                                   * handles stay valid */

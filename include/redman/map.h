@@ -70,18 +70,20 @@ RDM_API rdm_result rdm_map_clear(rdm_map *m);               /* all is unknown ag
 /* Adds one scan: rays from origin [3] to points [count][3]. Each voxel changes once: its
  * probability rises where a ray ends, else falls where rays pass. Points that are not finite are
  * left out, and those nearer to the origin than a voxel's side: a depth of 0 says that nothing was
- * seen. A full map does not grow further: the call returns OK, *dropped (may be NULL) says how many
- * voxels were left out, and voxels that exist are still updated. */
+ * seen. A map has 65536 voxels along each axis, with 0 in its middle: RANGE for an origin outside,
+ * and points outside end no ray. A full map does not grow further: the call returns OK, *dropped
+ * (may be NULL) says how many voxels were left out, and voxels that exist are still updated. */
 RDM_API rdm_result rdm_map_insert(rdm_map *m, const float origin[3], const float *points,
                                   size_t count, uint64_t *dropped);
 /* Adds one scan by a camera of the pool's task: depths of w x h rays of world env. Rays that end on
  * one of the num_skip shapes in skip [num_skip], or meet nothing, are left out. *dropped as
- * above. */
+ * above. RANGE for a shape, a world or w, h (1 to 8192) that does not exist. */
 RDM_API rdm_result rdm_map_scan(rdm_map *m, rdm_pool *p, int32_t env, const char *camera, int32_t w,
                                 int32_t h, const int32_t *skip, size_t num_skip,
                                 uint64_t *dropped);
 
-/* probability [count] that the voxel of each of points [count][3] is occupied; -1: unknown. */
+/* probability [count] that the voxel of each of points [count][3] is occupied; -1: unknown, also
+ * outside of the map. ARGUMENT for a point that is not finite; nothing is written then. */
 RDM_API rdm_result rdm_map_get_probabilities(const rdm_map *m, const float *points, size_t count,
                                              float *probability);
 /* Occupied voxels that overlap the box from low [3] to high [3]: writes up to capacity to out
@@ -98,7 +100,8 @@ RDM_API rdm_result rdm_map_raycast(const rdm_map *m, const float origin[3],
                                    const float direction[3], float range, int32_t through_unknown,
                                    float hit[3], int32_t *found);
 /* distance [count] from each of points [count][3] to the nearest point of an occupied voxel, m;
- * `most` when none is that near. */
+ * `most` when none is that near. ARGUMENT for a point that is not finite; nothing is written
+ * then. */
 RDM_API rdm_result rdm_map_get_distances(const rdm_map *m, const float *points, size_t count,
                                          float most, float *distance);
 /* Samples the map at the centres of a grid around `pose`, of n [3] cells (1 to 1024 each) of `side`

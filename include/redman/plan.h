@@ -113,7 +113,8 @@ typedef struct rdm_planner_config { /* what a planner is made from */
   const float *noise;        /* [action_dim] standard deviation of each entry, 0 to 10, copied;
                               * NULL: option noise */
   const double *cost_limits; /* [cost_dim] limit on the sum of each cost over an episode, < 0: none,
-                              * copied; NULL: the task's */
+                              * copied; NULL: those of the pool, of column 0 the limit that
+                              * the episode has */
   const rdm_policy *policy;  /* proposes plans: sample 0 of the first iteration is its rollout, the
                               * others add noise to that; must outlive the planner; NULL: none */
   const rdm_agent *agent;    /* its critic values the states at the horizon's end; must outlive the

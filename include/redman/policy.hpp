@@ -33,8 +33,12 @@ class Policy {
   std::vector<rdm_tensor> tensors() const {
     std::vector<rdm_tensor> out;
     rdm_tensor t;
-    for (int32_t i = 0; rdm_policy_tensor_at(get(), i, &t) == RDM_OK; ++i) out.push_back(t);
-    return out;
+    for (int32_t i = 0;; ++i) {
+      const rdm_result r = rdm_policy_tensor_at(get(), i, &t);
+      if (r == RDM_ERROR_RANGE) return out;
+      check(r);
+      out.push_back(t);
+    }
   }
   // [rows][cols] values.
   std::vector<float> read(const rdm_tensor& t) const {

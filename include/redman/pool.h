@@ -256,11 +256,12 @@ RDM_API rdm_result rdm_pool_baseline(rdm_pool *p, int32_t kind);
 
 /* The complete and exact state of world env: a pool of the same task and options that reads it
  * continues with the same bytes. env -1: all worlds in one block. read_state also rewrites obs and
- * clears the other rows of that world. FORMAT for bytes that are truncated, of another task or
- * other options, or hold values that no world can have; nothing changes then. The bytes are meant
- * for files and other processes. For snapshots within a process, as to go back some steps, copy
- * worlds into a second pool by rdm_pool_copy: in a task of hands that takes a thirtieth of the
- * time. */
+ * what rdm_sensors shows, and clears the other rows of that world but terminated, truncated and
+ * episode_status; sums and steps of its episode go on with the next step. FORMAT for bytes that are
+ * truncated, of another task or other options, or hold values that no world can have; nothing
+ * changes then. The bytes are meant for files and other processes. For snapshots within a process,
+ * as to go back some steps, copy worlds into a second pool by rdm_pool_copy: in a task of hands
+ * that takes a thirtieth of the time. */
 RDM_API rdm_result rdm_pool_write_state(const rdm_pool *p, int32_t env, void *bytes,
                                         size_t capacity, size_t *size); /* to bytes [capacity];
                                                                          * NULL asks for the
@@ -303,11 +304,11 @@ RDM_API rdm_result rdm_pool_render(rdm_pool *p, int32_t env, const char *camera,
                                    int32_t h, uint8_t *rgb, float *depth, int32_t *segmentation);
 typedef struct rdm_pool_stats { /* counts since create */
   uint32_t struct_size;      /* in: bytes */
-  int32_t contacts_max;      /* largest number of contacts in a substep since create, of all
-                              * worlds */
-  double contacts_mean;      /* mean number of contacts in a substep */
+  int32_t contacts_max;      /* largest number of contacts in the last substep of a control step
+                              * since create, of all worlds; other substeps may have had more */
+  double contacts_mean;      /* mean number of contacts in these substeps; 0 before the first */
   double joint_drift;        /* m, largest gap in any joint now, of all worlds */
-  int64_t steps;             /* control steps of one world, summed over worlds */
+  int64_t steps;             /* control steps that the engine simulated, summed over worlds */
   int64_t diverged;          /* steps and resets flagged RDM_STATUS_DIVERGED so far */
   int64_t overflowed;        /* steps flagged RDM_STATUS_CONTACTS so far */
   int64_t bad_actions;       /* steps flagged RDM_STATUS_BAD_ACTION so far */
@@ -342,8 +343,8 @@ RDM_API rdm_result rdm_pool_get_joints(const rdm_pool *p, int32_t env, double *q
  * coupling; its drive pulls it back. NaN for one means the position, or velocity, that follows from
  * the joint that it is coupled to. Bases, bodies and what the task remembers of commands stay.
  * Numbers are rounded to float where the engine keeps floats. Like read_state, it rewrites obs and
- * clears the other rows. Where a host's own task fails to observe, its error is returned; the
- * joints are set then, and obs is as before. */
+ * what rdm_sensors shows, and clears the other rows. Where a host's own task fails to observe, its
+ * error is returned; the joints are set then, and obs is as before. */
 RDM_API rdm_result rdm_pool_set_joints(rdm_pool *p, int32_t env, const double *q, const double *qd,
                                        size_t count);
 typedef struct rdm_ray_hit { /* what a ray hits first */

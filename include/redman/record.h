@@ -117,8 +117,9 @@ RDM_API rdm_result rdm_recording_append_all(rdm_recording *r, const rdm_recordin
  * begin_step adds a row with the pool's obs and action, and label [num_envs][action_dim] (NULL: as
  * the action); actions and labels are clipped to [-1, 1]. end_step adds the step's reward, costs
  * and flags to it; several steps between two begin_step make one row, of sums. A world that ended
- * begins an episode with its next row; one that a pool with next-step autoreset is about to reset
- * gets no row. A recording follows one pool at a time: rows of another one begin new episodes. */
+ * begins an episode with its next row; one in which no episode runs, or that a pool with next-step
+ * autoreset is about to reset, gets no row. STATE for a world that was never reset. A recording
+ * follows one pool at a time: rows of another one begin new episodes. */
 RDM_API rdm_result rdm_recording_begin_step(rdm_recording *r, const rdm_pool *p, const float *label,
                                             const uint8_t *mask);
 RDM_API rdm_result rdm_recording_end_step(rdm_recording *r, const rdm_pool *p, const uint8_t *mask);

@@ -25,13 +25,13 @@
  *     _error functions by any thread at any time. A policy may be shared by threads: it changes by
  *     rdm_policy_update_from alone. Functions without a handle may be called by any number of
  *     threads.
- *   - Only one call at a time may change a pool, agent, planner, recording or map. While none does,
- *     any number of calls that take it as `const` may read it (an agent excepted). A call that is
- *     made while another one is in progress returns STATE and does nothing, be it from a second
- *     thread or from a callback or hook that runs for this handle; its text is in rdm_last_error()
- *     alone. A rollout occupies its agent and its pool; a plan occupies its planner and the agent
- *     of its critic, and reads its pool. Destroying a handle during a call does nothing either, and
- *     the handle's log hook is told: destroy it again afterwards.
+ *   - Only one call at a time may change a pool, agent, actor, planner, shield, recording or map.
+ *     While none does, any number of calls that take it as `const` may read it (an agent excepted).
+ *     A call that is made while another one is in progress returns STATE and does nothing, be it
+ *     from a second thread or from a callback or hook that runs for this handle; its text is in
+ *     rdm_last_error() alone. A rollout occupies its agent and its pool; a plan occupies its
+ *     planner and the agent of its critic, and reads its pool. Destroying a handle during a call
+ *     does nothing either, and the handle's log hook is told: destroy it again afterwards.
  *   - fork: in the child process, calls that need a handle's own threads (num_threads above 1 and
  *     no parallel hook) return STATE, and the handle can be destroyed; all other handles work as in
  *     the parent.
@@ -79,8 +79,8 @@
  *     both input and output.
  *   - `const char *` is a text that ends in 0. `rdm_pool *`, `rdm_agent *`, `rdm_policy *`,
  *     `rdm_actor *`, `rdm_recording *`, `rdm_planner *`, `rdm_shield *`, `rdm_map *`,
- *     `rdm_scene *` and `rdm_world *` are handles, through `**` new ones. `void *` with a shape is
- *     bytes; other ones are passed through.
+ *     `rdm_import *`, `rdm_scene *` and `rdm_world *` are handles, through `**` new ones. `void *`
+ *     with a shape is bytes; other ones are passed through.
  *   - Text and bytes of any length come as (T *x, size_t capacity, size_t *size): x NULL asks for
  *     the size alone, a capacity below it is RANGE. The size of a text is without its 0, which the
  *     capacity must count.

@@ -100,16 +100,16 @@ typedef struct rdm_robot_def { /* a whole robot; the arrays are copied by rdm_ro
                                         * but neighbours */
   const rdm_robot_coupling *couplings; /* [num_couplings] NULL with num_couplings 0 */
   const rdm_robot_curve *curves;       /* [num_curves] NULL with num_curves 0 */
-  const int32_t *commands; /* [num_commands] rows in the order of actions; NULL: all but the
-                            * followers, by row */
+  const int32_t *commands; /* [num_commands] rows in the order of actions; NULL, with
+                            * num_commands 0: all but the followers, by row */
   const rdm_robot_finger *fingers;     /* [num_fingers] the first finger first; NULL with
                                         * num_fingers 0 */
   const double *home;      /* [num_links] start pose, rad (m); NULL: 0, or the limit nearest to
                             * it */
   const double *folded;    /* [num_links] of a hand: fingers straight, thumb across the palm; NULL:
                             * none */
-  const float *closed;     /* [num_commands] of a hand: commands that close it around 5 cm; NULL:
-                            * none */
+  const float *closed;     /* [num_commands], with 0 of these one for each joint that follows no
+                            * other, of a hand: commands that close it around 5 cm; NULL: none */
   int32_t num_links;       /* 1 to RDM_MAX_LINKS */
   int32_t num_shapes;      /* count */
   int32_t num_pairs;       /* count */
@@ -170,7 +170,8 @@ RDM_API rdm_result rdm_robot_get_postures(int32_t robot, int32_t *commands, doub
 /* Forward kinematics for joints q [num_links], in the root frame: writes the poses of the links to
  * links [num_links], of the flange to *flange, of the fingertips to tips [num_fingers][3] and of
  * the palm to *palm (origin at hold_p, y into the palm, z as the fingers point). flange, tips and
- * palm may be NULL. */
+ * palm may be NULL. UNSUPPORTED where the flange or the palm is asked of a robot without one;
+ * nothing is written then. */
 RDM_API rdm_result rdm_robot_get_poses(int32_t robot, const double *q, rdm_pose *links,
                                        rdm_pose *flange, double *tips, rdm_pose *palm);
 /* Inverse kinematics: moves joints q [num_links], from where they are, to where the arm's flange

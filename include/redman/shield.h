@@ -188,7 +188,8 @@ RDM_API rdm_result rdm_shield_get_settings(const rdm_shield *shield, char *text,
  * written then. */
 RDM_API rdm_result rdm_shield_act(rdm_shield *shield, const rdm_pool *pool, const uint8_t *mask,
                                   const float *proposed, float *action);
-/* What was done in the last decision of world env. */
+/* What was done in the last decision of world env; kind OWN before the first one. ARGUMENT for a
+ * pool that rdm_shield_act does not take. */
 RDM_API rdm_result rdm_shield_get_row(const rdm_shield *shield, const rdm_pool *pool, int32_t env,
                                       rdm_shield_row *io);
 /* Writes the RDM_SHIELD_... of each world's last decision to kind [num_envs]. */
@@ -202,7 +203,8 @@ RDM_API rdm_result rdm_shield_get_kinds(const rdm_shield *shield, int32_t *kind)
 RDM_API rdm_result rdm_shield_set_plan(rdm_shield *shield, const rdm_pool *pool, int32_t env,
                                        const float *plan, size_t decisions);
 /* Writes the present plan of world env to plan [capacity], a row of action_dim numbers for each
- * decision from now to the end; *size is how many numbers there are, 0 without a plan. */
+ * decision from now to the end; *size is how many numbers there are, 0 without a plan. ARGUMENT
+ * for a pool that rdm_shield_act does not take. */
 RDM_API rdm_result rdm_shield_get_plan(const rdm_shield *shield, const rdm_pool *pool, int32_t env,
                                        float *plan, size_t capacity, size_t *size);
 RDM_API rdm_result rdm_shield_get_stats(const rdm_shield *shield, rdm_shield_stats *io);

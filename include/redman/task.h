@@ -72,7 +72,8 @@ typedef struct rdm_scene_robot {
   const char *name;        /* begins, with '_', the names of its links, joints and shapes; unique */
   const char *material;    /* of its shapes; NULL: "default" */
   rdm_pose pose;           /* of its base at the start */
-  double base_damping;     /* damping of all links, 1/s; with a free base alone */
+  double base_damping;     /* damping of all links, 1/s; without a free base it has no
+                            * effect */
   int32_t free_base;       /* flag: the base moves */
   int32_t left;            /* flag: the mirror image */
   int32_t gravity;         /* flag: its links feel gravity */
@@ -221,15 +222,15 @@ RDM_API rdm_result rdm_world_get_contacts(const rdm_world *world, rdm_contact *o
  * it is free. */
 RDM_API rdm_result rdm_world_get_overlap(rdm_world *world, int32_t body, double *depth);
 /* Place a free body or a free base; or set joints q [n] and velocities qd [n] (NULL: 0) of a robot
- * of n joints, within their ranges, and with them the targets of its drives. */
+ * of n joints, clipped to their ranges, and with them the targets of its drives. */
 RDM_API rdm_result rdm_world_set_body(rdm_world *world, int32_t body, const rdm_motion *motion);
 RDM_API rdm_result rdm_world_set_base(rdm_world *world, int32_t robot,
                                       const rdm_motion *motion); /* STATE: it is fixed */
 RDM_API rdm_result rdm_world_set_joints(rdm_world *world, int32_t robot, const double *q,
                                         const double *qd, size_t n); /* all n */
-/* Set the targets of drives: targets [n] (rad, m) of the joints from `first` on; or commands [n] in
- * [-1, 1], all n of a robot, which its description turns into targets (by ranges or curves, no
- * faster than its joints' velocity). */
+/* Set the targets of drives: targets [n] (rad, m) of the joints from `first` on; or commands [n],
+ * clipped to [-1, 1], all n of a robot, which its description turns into targets (by ranges or
+ * curves, no faster than its joints' velocity). */
 RDM_API rdm_result rdm_world_set_targets(rdm_world *world, int32_t first, const double *targets,
                                          size_t n);
 RDM_API rdm_result rdm_world_set_commands(rdm_world *world, int32_t robot, const double *commands,
@@ -296,8 +297,9 @@ enum rdm_quantity { /* a quantity of worlds, and how many doubles it has */
 };
 /* Gets or sets quantity `what` of items first to first + count - 1 in each of n worlds, in x
  * [n][count][width], where width is the number of doubles of one. Setting does what the function
- * for one world does, row by row: on an error, the rows before it are set. RANGE for items that the
- * scene does not have, and for a count that is not that of items which are only set together. */
+ * for one world does, row by row: on an error, the rows before it are set, or written. At most
+ * 65536 worlds and 4096 items. RANGE for items that the scene does not have, and for a count that
+ * is not that of items which are only set together. */
 RDM_API rdm_result rdm_world_get_many(rdm_world **worlds, size_t n, int32_t what,
                                       int32_t first, size_t count, double *x);
 RDM_API rdm_result rdm_world_set_many(rdm_world **worlds, size_t n, int32_t what,
@@ -311,7 +313,8 @@ typedef struct rdm_random { /* frozen layout: a stream of random numbers; may be
 } rdm_random;
 /* Draw from the stream; 0 if random is NULL. The same numbers on every machine. */
 RDM_API uint64_t rdm_random_bits(rdm_random *random);
-RDM_API double rdm_random_uniform(rdm_random *random, double low, double high); /* in [low, high) */
+RDM_API double rdm_random_uniform(rdm_random *random, double low,
+                                  double high); /* in [low, high), up to rounding */
 RDM_API double rdm_random_normal(rdm_random *random); /* mean 0, deviation 1 */
 /* Makes another stream *out for draws within an episode: call it in reset and keep the stream in
  * the state. */
@@ -381,8 +384,8 @@ typedef struct rdm_camera_def { /* frozen layout: a pinhole camera, as rdm_camer
 } rdm_camera_def;
 typedef struct rdm_task_def { /* a whole task; all but `user` is copied by rdm_task_create */
   uint32_t struct_size;    /* bytes, set by rdm_task_def_init */
-  int32_t max_steps;       /* control steps of an episode: default of the option max_steps;
-                            * default 100 */
+  int32_t max_steps;       /* control steps of an episode: default of the option max_steps, 1
+                            * to 100000; default 100 */
   const char *name;        /* letters, digits, '_', '-', '.'; at most 40 */
   const char *summary;     /* one line; NULL: none */
   const rdm_field_def *fields;     /* [num_fields] of an observation, in order */

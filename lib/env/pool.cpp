@@ -242,6 +242,10 @@ double Pool::magnitude(int32_t env, int32_t cost) const {
   if (impl_->repeat > 1) return impl_->slots[env].magnitude[cost];
   return std::max(static_cast<double>(impl_->cost_row(impl_->buffers.cost_raw, env)[cost]), 0.0);
 }
+bool Pool::begun(int32_t env) const {
+  return impl_->slots[env].episode.phase != Phase::kNew;
+}
+
 bool Pool::running(int32_t env) const {
   return impl_->slots[env].episode.phase == Phase::kRunning;
 }

@@ -133,6 +133,7 @@ class Pool {
   // Of the episode that runs in a world, or has ended there: control steps so far, sums of rewards and of a
   // cost; running: false after its end.
   bool running(int32_t env) const;
+  bool begun(int32_t env) const;  // it was reset
   int32_t episode_step(int32_t env) const;
   double gained(int32_t env) const;
   double spent(int32_t env, int32_t cost) const;

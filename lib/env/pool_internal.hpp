@@ -137,6 +137,7 @@ struct Pool::Impl : ResolvedPoolConfig {
   bool observe(int32_t env, int32_t step, float* row);
   bool show(int32_t env, int32_t step, float* row);  // what the task has written, made what is seen
   void see(int32_t env, Block& block);               // pictures, points and voxels
+  void see_again(int32_t begin, int32_t end);        // of worlds whose state was set
   template <class F>
   void look_round(int32_t begin, int32_t end, Block& block, F&& named);
   // A control step of the block's worlds for which wanted(env).

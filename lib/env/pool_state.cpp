@@ -237,6 +237,7 @@ void Pool::set_state(int32_t env, const void* bytes, size_t size) {
     if (with_starts) m.slots[i].start = drawn.value<Stream>();
   }
   m.starts.share = share;
+  m.see_again(range.begin, range.end);
 }
 
 void Pool::join_states(const StateBytes* parts, int32_t count, Writer& out) {

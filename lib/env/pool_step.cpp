@@ -90,6 +90,7 @@ void Pool::set_joints(int32_t env, const double* q, const double* qd) {
   m.clear_rows(env);
   if (code != Code::kOk) fail(code, "%s", task_error(env));
   if (!good) m.buffers.status[env] = kStatusDiverged;
+  m.see_again(env, env + 1);
 }
 
 void Pool::set_limit(int32_t env, double limit) {
@@ -230,6 +231,13 @@ void Pool::Impl::see(int32_t env, Block& block) {
   sense_world(sense, *s.world, task->focus(*s.world, s.task_state), task->goal_pose(s.task_state),
               stream(s.episode.step, Purpose::kSense), stream(0, Purpose::kCamera), block.sense, sensed,
               static_cast<size_t>(env));
+}
+
+void Pool::Impl::see_again(int32_t begin, int32_t end) {
+  if (!sense.any()) return;
+  each_world(nullptr, [&](int32_t env, Block& block) {
+    if (env >= begin && env < end && slots[env].episode.phase != Phase::kNew) see(env, block);
+  });
 }
 
 void Pool::Impl::clear_rows(int32_t env) {

@@ -109,6 +109,9 @@ void act_outputs(const PolicyView& v, float* y, int32_t rows, const float* noise
   const size_t dim = sz(v.action_dim()), width = sz(v.actor.out);
   for (size_t i = 0; i < sz(rows); ++i, y += width) {
     float* const log_std = y + dim;
+    // a network that overflows has no action: clipped, infinity would be a full deflection
+    for (size_t j = 0; j < dim; ++j)
+      if (std::isinf(y[j])) y[j] = std::numeric_limits<float>::quiet_NaN();
     for (size_t j = 0; v.state_std && j < dim; ++j)
       log_std[j] = std::clamp(log_std[j], v.std_bounds[0], v.std_bounds[1]);
     for (float* to : {out.mean, out.action})

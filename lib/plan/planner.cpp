@@ -101,6 +101,7 @@ void Planner::make_rollouts(const PlannerConfig& c) {
   cost_dim_ = pool.cost_dim();
   rule_.num_costs = cost_dim_;
   for (int32_t k = 0; k < cost_dim_; ++k) {
+    pools_limit_ = !c.cost_limits;
     limit_[k] = c.cost_limits ? c.cost_limits[k] : info.costs[k].limit;
     if (std::isnan(limit_[k])) fail(Code::kArgument, "cost_limits: entry %d is not a number", k);
   }
@@ -227,8 +228,11 @@ void Planner::set_budgets(const Pool& pool, int32_t env) {
   // budget=share: of the budget that is left, the part that the horizon has of the steps that are left
   const double left = pool.task().max_steps() - pool.episode_step(env);
   const double share = settings_.share ? std::min(1.0, settings_.horizon * pool.repeat() / left) : 1.0;
-  for (int32_t k = 0; k < cost_dim_; ++k)
-    rule_.budget[k] = limit_[k] < 0 ? -1 : share * std::max(limit_[k] - pool.spent(env, k), 0.0);
+  for (int32_t k = 0; k < cost_dim_; ++k) {
+    const double own = k == 0 && pools_limit_ ? pool.limit(env) : -1;  // of the episode, by option limit
+    const double limit = own < 0 ? limit_[k] : own;
+    rule_.budget[k] = limit < 0 ? -1 : share * std::max(limit - pool.spent(env, k), 0.0);
+  }
 }
 
 bool Planner::stopped() {

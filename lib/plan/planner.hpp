@@ -149,6 +149,7 @@ class Planner {
   PlanOptions settings_;  // what options_ say, within each other's bounds
   CourseRule rule_;
   double limit_[kMaxTaskCosts] = {};  // of an episode, < 0: none
+  bool pools_limit_ = false;          // of column 0 the limit that the pool's episode has, where it has one
   MeanPolicy* policy_ = nullptr;
   PlanCritic* critic_ = nullptr;
   int32_t (*stop_)(void*, int64_t) = nullptr;

@@ -136,6 +136,9 @@ void Recording::check(const RecordingRows& in) const {
   if (n && spec_.point_color && !in.point_color) fail(Code::kArgument, "point_color is NULL");
   if (n && !spec_.point_color && in.point_color)
     fail(Code::kArgument, "point_color: this recording has none");
+  if (n && !spec_.num_points && in.point_class)
+    fail(Code::kArgument, "point_class: this recording has no clouds");
+  if (n && cost_dim() == 0 && in.cost) fail(Code::kArgument, "cost: this recording has none");
   check_finite("obs", in.obs, n, obs_dim());
   check_finite("action", in.action, n, action_dim());
   check_finite("label", in.label, n, action_dim());

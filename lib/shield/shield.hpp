@@ -127,9 +127,10 @@ class Shield {
   // Actions [count][action_dim] become the plan of world env where they, and then a backup, are clean in a copy; else
   // Error(kState) says what would come, and its plan stays. No heap use.
   void set_plan(const Pool& pool, int32_t env, const float* actions, int32_t count);
-  void forget(const uint8_t* mask);  // plans and memories of worlds whose mask is not 0 (null: all)
-  void skip(int32_t env);            // a world without an episode: its last decision is its own
-  void forget_blocks();              // only what was foreseen: its policy has changed
+  void forget(const uint8_t* mask);         // plans and memories of worlds whose mask is not 0 (null: all)
+  void skip(int32_t env);                   // a world without an episode: its last decision is its own
+  void forget_blocks();                     // only what was foreseen: its policy has changed
+  void check_pool(const Pool& pool) const;  // Error(kArgument) for one that act does not take
   const ShieldRow& row(int32_t env) const { return rows_[env]; }
   // What counts as proposed in the last decision, [action_dim]: of a block, what was foreseen.
   const float* own(int32_t env) const { return own_ + row_of(env); }
@@ -219,7 +220,6 @@ class Shield {
 
   // The decision of its plan that a world is at; -1: the plan is none of its episode as it is.
   int32_t place(const Pool& pool, int32_t env) const;
-  void check_pool(const Pool& pool) const;
   bool follows(const Pool& pool, int32_t env, const float* proposed, bool foreseen);
   void predict(const Pool& pool, const uint8_t* mask, const float* proposed, Foresight* foresight,
                bool unneeded);

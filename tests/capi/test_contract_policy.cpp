@@ -136,6 +136,31 @@ TEST(PolicyInMemory, IsRefusedAsOnTheHeap) {
   EXPECT_EQ(p, nullptr);
 }
 
+// Infinity is no action, though it could be clipped to one.
+TEST(PolicyInMemory, RefusesWhatTheNetworkOverflowsOn) {
+  rdm_agent* a = agent_of("normalize_obs=false\nactivation=relu");
+  rdm_tensor first{};
+  for (int32_t i = 0;
+       rdm_agent_tensor_at(a, i, &first) == RDM_OK && std::string(first.name) != "actor.0.weight";)
+    ++i;
+  const std::vector<float> fours(static_cast<size_t>(first.rows) * static_cast<size_t>(first.cols), 4.0f);
+  ASSERT_EQ(rdm_agent_set_tensor(a, "actor.0.weight", fours.data(), fours.size()), RDM_OK)
+      << rdm_last_error();
+  const Bytes bytes = policy_bytes(a);
+  rdm_agent_destroy(a);
+  rdm_policy* p = nullptr;
+  ASSERT_EQ(rdm_policy_read(&p, bytes.data(), bytes.size()), RDM_OK) << rdm_last_error();
+  const std::vector<float> huge(12, 3e38f);
+  std::vector<float> action(8), mean(8);
+  Bytes scratch(rdm_policy_scratch(p, 4));
+  EXPECT_EQ(rdm_policy_act(p, huge.data(), 4, nullptr, action.data(), scratch.data(), scratch.size()),
+            RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_policy_sample(p, huge.data(), 4, nullptr, action.data(), mean.data(), scratch.data(),
+                              scratch.size()),
+            RDM_ERROR_ARGUMENT);
+  rdm_policy_destroy(p);
+}
+
 TEST(PolicySample, IsTheActionBeforeTheClipBesideItsMean) {
   for (const char* kind : kKinds) {
     if (std::strstr(kind, "encoder")) continue;

@@ -71,6 +71,61 @@ std::string file_path() {
   return testing::TempDir() + "redman_recording.npz";
 }
 
+// A world whose episode has ended has no row until it is reset, whatever mask is given.
+TEST(ContractRecording, WorldsWithoutAnEpisodeHaveNoRows) {
+  const Worlds w(0, 0, RDM_AUTORESET_OFF);
+  const Owned o{recording_for(w.pool, 4)};
+  const rdm_buffers b = buffers_of(w.pool);
+  int32_t running = 4;
+  std::vector<uint8_t> mask(4, 1);
+  double sum = 0, recorded = 0;
+  while (running > 0) {
+    ASSERT_EQ(rdm_pool_baseline(w.pool, RDM_BASELINE_RANDOM), RDM_OK);
+    ASSERT_EQ(rdm_recording_begin_step(o.r, w.pool, nullptr, nullptr), RDM_OK);
+    ASSERT_EQ(rdm_pool_step_masked(w.pool, mask.data()), RDM_OK);
+    ASSERT_EQ(rdm_recording_end_step(o.r, w.pool, nullptr), RDM_OK);
+    for (size_t i = 0; i < 4; ++i) {
+      if (!mask[i]) continue;
+      sum += static_cast<double>(b.reward[i]);
+      if (b.terminated[i] || b.truncated[i]) mask[i] = 0, --running;
+    }
+  }
+  ASSERT_EQ(rdm_recording_begin_step(o.r, w.pool, nullptr, nullptr), RDM_OK);
+  EXPECT_EQ(info_of(o.r).episodes, 4);
+  const rdm_recording_rows v = rows_of(o.r);
+  for (int64_t i = 0; i < v.rows; ++i) recorded += static_cast<double>(v.reward[i]);
+  EXPECT_NEAR(recorded, sum, 1e-4 * std::abs(sum));
+  rdm_pool* fresh = make_pool(pool_config(4));
+  const Owned other{recording_for(fresh, 4)};
+  EXPECT_EQ(rdm_recording_begin_step(other.r, fresh, nullptr, nullptr), RDM_ERROR_STATE);
+  rdm_pool_destroy(fresh);
+}
+
+TEST(ContractRecording, DataThatItHasNoPlaceForAreRefused) {
+  rdm_recording_config c;
+  ASSERT_EQ(rdm_recording_config_init(&c, sizeof c), RDM_OK);
+  c.obs_dim = c.action_dim = 1;
+  rdm_recording* r = nullptr;
+  c.point_color = 1;
+  EXPECT_EQ(rdm_recording_create(&r, &c), RDM_ERROR_ARGUMENT);
+  c.point_color = 0;
+  ASSERT_EQ(rdm_recording_create(&r, &c), RDM_OK);
+  const Owned o{r};
+  const float one = 1;
+  const uint8_t kind = 1;
+  rdm_recording_rows v{};
+  v.struct_size = sizeof v;
+  v.rows = 1;
+  v.obs = v.action = &one;
+  v.cost = &one;
+  EXPECT_EQ(rdm_recording_append(r, &v), RDM_ERROR_ARGUMENT);
+  v.cost = nullptr;
+  v.point_class = &kind;
+  EXPECT_EQ(rdm_recording_append(r, &v), RDM_ERROR_ARGUMENT);
+  v.point_class = nullptr;
+  EXPECT_EQ(rdm_recording_append(r, &v), RDM_OK);
+}
+
 }  // namespace
 
 TEST(ContractRecording, APoolsRows) {

@@ -225,6 +225,24 @@ TEST(ContractRollout, DeadStepsAreNotCounted) {
   EXPECT_LE(e.env_steps, s.steps);
 }
 
+TEST(ContractRollout, APoolThatWasNotResetChangesNothing) {
+  Pair a;
+  rdm_pool* fresh = make_pool(pool_config(4));
+  const auto state = [&] {
+    size_t size = 0;
+    EXPECT_EQ(rdm_agent_write_state(a.agent, nullptr, 0, &size), RDM_OK);
+    std::vector<unsigned char> bytes(size);
+    EXPECT_EQ(rdm_agent_write_state(a.agent, bytes.data(), size, &size), RDM_OK);
+    return bytes;
+  };
+  const auto before = state();
+  EXPECT_EQ(rdm_agent_rollout(a.agent, fresh, nullptr), RDM_ERROR_STATE);
+  EXPECT_NE(std::string(rdm_last_error()).find("world 0 was not reset"), std::string::npos)
+      << rdm_last_error();
+  EXPECT_EQ(state(), before);
+  rdm_pool_destroy(fresh);
+}
+
 TEST(ContractRollout, CancelLeavesAGoodHandle) {
   Pair a;
   rdm_agent_cancel(a.agent);

@@ -31,6 +31,21 @@ rdm_pool* make_world() {
   return p;
 }
 
+TEST(Map, WhatIsNoPlaceOrNoShapeIsRefused) {
+  const MapHandle map;
+  const float at[] = {0, 0, 0, NAN, 0, 0};
+  float out[2] = {7, 7};
+  EXPECT_EQ(rdm_map_get_probabilities(map.m, at, 2, out), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_map_get_distances(map.m, at, 2, 1, out), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(out[0], 7);
+  rdm_pool* p = make_world();
+  for (const int32_t shape : {-1, 99999}) {
+    const int32_t skip[] = {0, shape};
+    EXPECT_EQ(rdm_map_scan(map.m, p, 0, "front", 8, 8, skip, 2, nullptr), RDM_ERROR_RANGE) << shape;
+  }
+  rdm_pool_destroy(p);
+}
+
 TEST(Map, ScansOfATasksCamerasShowItsShapes) {
   rdm_pool* p = make_world();
   const MapHandle map(0.02, 1u << 26, nullptr, 2.5);  // the floor goes on for a hundred metres
@@ -238,8 +253,7 @@ TEST(Map, BadArgumentsGetAnswersAndNothingIsPrinted) {
   EXPECT_EQ(rdm_map_insert(map.m, p, p, SIZE_MAX, nullptr), RDM_ERROR_RANGE);
   EXPECT_EQ(rdm_map_scan(map.m, nullptr, 0, "top", 8, 8, nullptr, 0, nullptr), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_map_get_probabilities(map.m, nullptr, 1, out), RDM_ERROR_ARGUMENT);
-  EXPECT_EQ(rdm_map_get_probabilities(map.m, nan, 1, out), RDM_OK);
-  EXPECT_EQ(out[0], -1);
+  EXPECT_EQ(rdm_map_get_probabilities(map.m, nan, 1, out), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_map_get_voxels(map.m, p, nan, nullptr, 0, &count), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_map_get_voxels(map.m, p, p, nullptr, 1, &count), RDM_ERROR_ARGUMENT);
   EXPECT_EQ(rdm_map_meets(map.m, &no_pose, p, &flag), RDM_ERROR_ARGUMENT);

@@ -53,6 +53,45 @@ TEST(Sensors, TwoThousandPointsOfBothHandsAndTheObject) {
   }
 }
 
+// What a state that is read, or joints that are set, show at once: as the pool that they come from.
+TEST(Sensors, AStateThatWasReadIsSeen) {
+  const Seeing from({{"modality", "points+depth", 0}, {"points", nullptr, 64}});
+  Seeing to({{"modality", "points+depth", 0}, {"points", nullptr, 64}}, 2, 1);
+  for (int i = 0; i < 5; ++i) {
+    ASSERT_EQ(rdm_pool_baseline(from.p, RDM_BASELINE_RANDOM), RDM_OK);
+    ASSERT_EQ(rdm_pool_step(from.p), RDM_OK);
+  }
+  const auto same = [&](int env) {
+    const size_t n = 3 * 64, at = n * static_cast<size_t>(env);
+    return std::equal(from.s.points + at, from.s.points + at + n, to.s.points + at);
+  };
+  std::vector<unsigned char> bytes(1 << 20);
+  size_t size = 0;
+  ASSERT_EQ(rdm_pool_write_state(from.p, 1, bytes.data(), bytes.size(), &size), RDM_OK);
+  EXPECT_FALSE(same(1));
+  ASSERT_EQ(rdm_pool_read_state(to.p, 1, bytes.data(), size), RDM_OK) << rdm_pool_error(to.p);
+  EXPECT_TRUE(same(1));
+  EXPECT_FALSE(same(0));
+  ASSERT_EQ(rdm_pool_write_state(from.p, -1, bytes.data(), bytes.size(), &size), RDM_OK);
+  ASSERT_EQ(rdm_pool_read_state(to.p, -1, bytes.data(), size), RDM_OK) << rdm_pool_error(to.p);
+  EXPECT_TRUE(same(0) && same(1));
+  const size_t pixels = static_cast<size_t>(to.s.width) * static_cast<size_t>(to.s.height);
+  EXPECT_TRUE(std::equal(from.s.depth, from.s.depth + 2 * pixels, to.s.depth));
+
+  const std::vector<float> before(to.s.points, to.s.points + 3 * 64);
+  rdm_spec spec{};
+  spec.struct_size = sizeof spec;
+  ASSERT_EQ(rdm_pool_get_spec(to.p, &spec), RDM_OK);
+  std::vector<double> q(256);
+  size_t joints = 0;
+  for (rdm_joint_info j = RDM_INIT(rdm_joint_info);
+       rdm_pool_joint_at(to.p, static_cast<int32_t>(joints), &j) == RDM_OK; ++joints)
+    q[joints] = (j.lower + j.upper) / 2;
+  ASSERT_EQ(rdm_pool_set_joints(to.p, 0, q.data(), nullptr, joints), RDM_OK) << rdm_pool_error(to.p);
+  EXPECT_FALSE(std::equal(before.begin(), before.end(), to.s.points));
+  EXPECT_TRUE(same(1));
+}
+
 TEST(Sensors, PicturesAreThoseOfRender) {
   const Seeing seeing({{"modality", "rgb+depth+segmentation", 0},
                        {"cameras", "top+front", 0},

@@ -37,6 +37,20 @@ int64_t violations_of(const Pool& pool) {
   EXPECT_EQ(rdm_pool_get_stats(pool.get(), &out), RDM_OK);
   return out.violations;
 }
+}  // namespace
+
+TEST(ShieldRefusals, APoolOfAnotherSizeHasNoRows) {
+  const Pool pool = pool_of("hand_over_safe_joint", kHeld, 4),
+             small = pool_of("hand_over_safe_joint", kHeld, 1);
+  const Shield shield = shield_of(pool);
+  auto row = RDM_INIT(rdm_shield_row);
+  size_t size = 0;
+  EXPECT_EQ(rdm_shield_get_row(shield.get(), pool.get(), 3, &row), RDM_OK);
+  EXPECT_EQ(rdm_shield_get_row(shield.get(), small.get(), 3, &row), RDM_ERROR_ARGUMENT);
+  EXPECT_EQ(rdm_shield_get_plan(shield.get(), small.get(), 3, nullptr, 0, &size), RDM_ERROR_ARGUMENT);
+}
+
+namespace {
 // Random actions, or a policy's, looked at.
 void play(const Pool& pool, const Shield& shield, int32_t steps, const rdm_policy* policy = nullptr,
           int32_t n = 32) {

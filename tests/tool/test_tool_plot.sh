@@ -24,6 +24,8 @@ check 'runs' '"runs":4,"lines":3' all 1
 for task in ball_run two_state; do check "a row of $task" ">$task: return<" all.svg 1; done
 check 'an algorithm is named once' 'class="legend"' all.svg 2
 check 'the limits' 'class="level"' all.svg 2
+"$tool" plot ball_run.* ball_run.ppo.0 ./ball_run.ppo.0 --out one.svg --json > one || exit 1
+check 'a run that is named again is no other one' '"runs":3' one 1
 "$tool" plot ball_run.* --each --out each.svg --json > each || exit 1
 check 'lines of each' '"lines":3' each 1
 # A run of other settings, here under a shield, is no seed of the others.

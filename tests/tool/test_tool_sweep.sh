@@ -32,6 +32,21 @@ before=$(ls -l --time-style=full-iso whole/bandit/crpo/seed-000/policy.rdm)
 "$tool" sweep $flags --out whole > /dev/null 2> err || { cat err; failed=1; }
 [ "$before" = "$(ls -l --time-style=full-iso whole/bandit/crpo/seed-000/policy.rdm)" ] || { echo "a run that was done was done again"; failed=1; }
 
+# Other settings are other runs, and a run that is asked for twice is no second one.
+refuse() {  # refuse TEXT FLAG...
+  text=$1
+  shift
+  # shellcheck disable=SC2086
+  "$tool" sweep $flags "$@" --out whole > /dev/null 2> err
+  [ $? -eq 2 ] && grep -q -- "$text" err || { echo "sweep $*: $(cat err)"; failed=1; }
+}
+refuse 'give another folder' --set discount=0.5
+refuse 'give another folder' --cost-limit 3
+"$tool" sweep --tasks bandit,bandit --steps 512 --out twice > /dev/null 2> err
+[ $? -eq 2 ] && grep -q 'given twice' err || { echo "a task that is given twice: $(cat err)"; failed=1; }
+"$tool" sweep --tasks bandit --seeds 0,0 --steps 512 --out twice > /dev/null 2> err
+[ $? -eq 2 ] && grep -q 'given twice' err || { echo "a seed that is given twice: $(cat err)"; failed=1; }
+
 # Two sweeps in one folder divide the runs, each of which is trained once.
 for each in a b; do
   # shellcheck disable=SC2086

@@ -131,6 +131,23 @@ signal raw
 json cost_mean eval --task ball_circle --policy zero --episodes 3
 signal flag
 
+# One limit, by one flag; the limit of a step is that of an episode.
+expect 2 'both are the limit on column 0' train --task bandit --cost-limit 3 --set cost_limit=4 --out no
+expect 2 'column cost has two limits, 3 and cost=4' eval --task bandit --policy zero --cost-limit 3 --cost-limit cost=4
+expect 2 'both are limits on column 0' train --task ball_run --cost-limit 3 --set cost_limit_per_step=0.1 --out no
+json cost train --task ball_run --algo ppo_lag --envs 4 --steps 400 --set max_steps=20 --set cost_limit_per_step=0.1 --out rated
+grep -q '"cost_limit":2.0' out || { echo "the limit of 20 steps of 0.1: $(cat out)"; failed=1; }
+json cost_mean eval --policy rated --episodes 2
+grep -q '"cost_limits":\[2.0' out || { echo "eval has another limit: $(cat out)"; failed=1; }
+grep -q '"cost": 2.0' rated/config.json || { echo "config.json has another limit"; failed=1; }
+
+# Files that are read are not written over, and two files need two names.
+cp run/policy.rdm kept.rdm
+expect 2 'it is the file of --policy' export --policy kept.rdm --c kept.rdm
+expect 2 'it is the file of --onnx' export --policy kept.rdm --c a.c --onnx ./a.c
+expect 2 'it is the file of --out' rollout --task bandit --policy zero --out r.csv --record r.csv
+cmp -s run/policy.rdm kept.rdm || { echo "the policy was written over"; failed=1; }
+
 # A limit of the learner is none of option budget, which has its own.
 expect 0 'give --set limit=3' eval --task ball_run --policy zero --episodes 1 --set budget=end --cost-limit 3
 

@@ -1522,10 +1522,11 @@ class rdm_contact(Structure):
 class PoolStats(Record):
     """counts since create
 
-    contacts_max: largest number of contacts in a substep since create, of all worlds
-    contacts_mean: mean number of contacts in a substep
+    contacts_max: largest number of contacts in the last substep of a control step since create, of all worlds;
+        other substeps may have had more
+    contacts_mean: mean number of contacts in these substeps; 0 before the first
     joint_drift: m, largest gap in any joint now, of all worlds
-    steps: control steps of one world, summed over worlds
+    steps: control steps that the engine simulated, summed over worlds
     diverged: steps and resets flagged Status.DIVERGED so far
     overflowed: steps flagged Status.CONTACTS so far
     bad_actions: steps flagged Status.BAD_ACTION so far
@@ -1555,10 +1556,11 @@ class rdm_pool_stats(Structure):
     """counts since create
 
     struct_size: in: bytes
-    contacts_max: largest number of contacts in a substep since create, of all worlds
-    contacts_mean: mean number of contacts in a substep
+    contacts_max: largest number of contacts in the last substep of a control step since create, of all worlds;
+        other substeps may have had more
+    contacts_mean: mean number of contacts in these substeps; 0 before the first
     joint_drift: m, largest gap in any joint now, of all worlds
-    steps: control steps of one world, summed over worlds
+    steps: control steps that the engine simulated, summed over worlds
     diverged: steps and resets flagged RDM_STATUS_DIVERGED so far
     overflowed: steps flagged RDM_STATUS_CONTACTS so far
     bad_actions: steps flagged RDM_STATUS_BAD_ACTION so far
@@ -2448,7 +2450,8 @@ class rdm_planner_config(Structure):
     pool: rollouts have its task and options; required; needed only during creation
     seed: of the noise; default 0
     noise: [action_dim] standard deviation of each entry, 0 to 10, copied; NULL: option noise
-    cost_limits: [cost_dim] limit on the sum of each cost over an episode, < 0: none, copied; NULL: the task's
+    cost_limits: [cost_dim] limit on the sum of each cost over an episode, < 0: none, copied; NULL: those of the
+        pool, of column 0 the limit that the episode has
     policy: proposes plans: sample 0 of the first iteration is its rollout, the others add noise to that; must
         outlive the planner; NULL: none
     agent: its critic values the states at the horizon's end; must outlive the planner, and no other thread may
@@ -3515,11 +3518,13 @@ class rdm_robot_def(Structure):
     pairs: [num_pairs] NULL with num_pairs 0; num_pairs -1: all but neighbours
     couplings: [num_couplings] NULL with num_couplings 0
     curves: [num_curves] NULL with num_curves 0
-    commands: [num_commands] rows in the order of actions; NULL: all but the followers, by row
+    commands: [num_commands] rows in the order of actions; NULL, with num_commands 0: all but the followers, by
+        row
     fingers: [num_fingers] the first finger first; NULL with num_fingers 0
     home: [num_links] start pose, rad (m); NULL: 0, or the limit nearest to it
     folded: [num_links] of a hand: fingers straight, thumb across the palm; NULL: none
-    closed: [num_commands] of a hand: commands that close it around 5 cm; NULL: none
+    closed: [num_commands], with 0 of these one for each joint that follows no other, of a hand: commands that
+        close it around 5 cm; NULL: none
     num_links: 1 to RDM_MAX_LINKS
     num_shapes: count
     num_pairs: count
@@ -3741,7 +3746,7 @@ class rdm_scene_robot(Structure):
     name: begins, with '_', the names of its links, joints and shapes; unique
     material: of its shapes; NULL: "default"
     pose: of its base at the start
-    base_damping: damping of all links, 1/s; with a free base alone
+    base_damping: damping of all links, 1/s; without a free base it has no effect
     free_base: flag: the base moves
     left: flag: the mirror image
     gravity: flag: its links feel gravity
@@ -4251,7 +4256,7 @@ class rdm_task_def(Structure):
     """a whole task; all but `user` is copied by rdm_task_create
 
     struct_size: bytes, set by rdm_task_def_init
-    max_steps: control steps of an episode: default of the option max_steps; default 100
+    max_steps: control steps of an episode: default of the option max_steps, 1 to 100000; default 100
     name: letters, digits, '_', '-', '.'; at most 40
     summary: one line; NULL: none
     fields: [num_fields] of an observation, in order
@@ -4589,7 +4594,8 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"host": POINTER(rdm_host)},
         {}, False,
         """Sets process-wide hooks for handles that are made later from configs whose host is NULL; host
-        NULL: the defaults. Calls are counted. Optional.
+        NULL: the defaults. The first call sets them. Later ones are counted and change nothing with
+        NULL, and are STATE with hooks, until rdm_shutdown has undone all. Optional.
         """),
     "rdm_shutdown": Function(
         None, {},
@@ -4977,8 +4983,8 @@ FUNCTIONS: dict[str, Function] = {
         coupling; its drive pulls it back. NaN for one means the position, or velocity, that follows from
         the joint that it is coupled to. Bases, bodies and what the task remembers of commands stay.
         Numbers are rounded to float where the engine keeps floats. Like read_state, it rewrites obs and
-        clears the other rows. Where a host's own task fails to observe, its error is returned; the
-        joints are set then, and obs is as before.
+        what rdm_sensors shows, and clears the other rows. Where a host's own task fails to observe, its
+        error is returned; the joints are set then, and obs is as before.
         """),
     "rdm_pool_raycast": Function(
         c_int32, {"p": c_void_p, "env": c_int32, "origin": c_void_p, "direction": c_void_p, "range": c_double, "io": POINTER(rdm_ray_hit)},
@@ -5150,7 +5156,8 @@ FUNCTIONS: dict[str, Function] = {
         num_envs must agree. Where the pool has option action_repeat itself, the agent's action_repeat
         must be a multiple of the pool's, as it is in the defaults that rdm_agent_config_for_pool sets.
         With the agent's option cost_signal=raw the costs are sums over control steps of cost_raw where
-        that is above 0.
+        that is above 0. STATE for a pool that was not reset or has autoreset off, and inside a horizon;
+        ARGUMENT where sizes or action_repeat differ; nothing changes then. io may be NULL.
         """),
     "rdm_agent_cancel": Function(
         None, {"a": c_void_p},
@@ -5192,13 +5199,15 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"a": c_void_p, "name": c_char_p, "out": c_void_p, "count": c_size_t},
         {"out": Rows("float32", ("count",))}, False,
         """Copies the named tensor to out [count] or from values [count]; count must be rows * cols.
-        NOT_FOUND, RANGE.
+        NOT_FOUND, RANGE. Values of actor.log_std are clipped, at the next act, to what options std_min
+        and std_max allow.
         """),
     "rdm_agent_set_tensor": Function(
         c_int32, {"a": c_void_p, "name": c_char_p, "values": c_void_p, "count": c_size_t},
         {"values": Rows("float32", ("count",))}, False,
         """Copies the named tensor to out [count] or from values [count]; count must be rows * cols.
-        NOT_FOUND, RANGE.
+        NOT_FOUND, RANGE. Values of actor.log_std are clipped, at the next act, to what options std_min
+        and std_max allow.
         """),
     "rdm_agent_write_policy": Function(
         c_int32, {"a": c_void_p, "bytes": c_void_p, "capacity": c_size_t, "size": c_void_p},
@@ -5237,7 +5246,8 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"path": c_char_p, "a": c_void_p, "p": c_void_p, "note": c_void_p, "capacity": c_size_t, "note_size": c_void_p},
         {}, False,
         """Reads it back; note [capacity] receives the note, up to that many bytes, and *note_size is its
-        size. Nothing changes on failure.
+        size; note may be NULL with capacity 0. With p NULL the file's pool, if any, is not read. FORMAT
+        where p is given and the file has none. Nothing changes on failure.
         """),
     "rdm_pool_set_limit": Function(
         c_int32, {"p": c_void_p, "env": c_int32, "limit": c_double},
@@ -5360,20 +5370,23 @@ FUNCTIONS: dict[str, Function] = {
         """Adds one scan: rays from origin [3] to points [count][3]. Each voxel changes once: its
         probability rises where a ray ends, else falls where rays pass. Points that are not finite are
         left out, and those nearer to the origin than a voxel's side: a depth of 0 says that nothing was
-        seen. A full map does not grow further: the call returns OK, *dropped (may be NULL) says how many
-        voxels were left out, and voxels that exist are still updated.
+        seen. A map has 65536 voxels along each axis, with 0 in its middle: RANGE for an origin outside,
+        and points outside end no ray. A full map does not grow further: the call returns OK, *dropped
+        (may be NULL) says how many voxels were left out, and voxels that exist are still updated.
         """),
     "rdm_map_scan": Function(
         c_int32, {"m": c_void_p, "p": c_void_p, "env": c_int32, "camera": c_char_p, "w": c_int32, "h": c_int32, "skip": c_void_p, "num_skip": c_size_t, "dropped": c_void_p},
         {"skip": Rows("int32", ("num_skip",))}, True,
         """Adds one scan by a camera of the pool's task: depths of w x h rays of world env. Rays that end on
         one of the num_skip shapes in skip [num_skip], or meet nothing, are left out. *dropped as
-        above.
+        above. RANGE for a shape, a world or w, h (1 to 8192) that does not exist.
         """),
     "rdm_map_get_probabilities": Function(
         c_int32, {"m": c_void_p, "points": c_void_p, "count": c_size_t, "probability": c_void_p},
         {"points": Rows("float32", ("count", "3")), "probability": Rows("float32", ("count",))}, True,
-        """probability [count] that the voxel of each of points [count][3] is occupied; -1: unknown."""),
+        """probability [count] that the voxel of each of points [count][3] is occupied; -1: unknown, also
+        outside of the map. ARGUMENT for a point that is not finite; nothing is written then.
+        """),
     "rdm_map_get_voxels": Function(
         c_int32, {"m": c_void_p, "low": c_void_p, "high": c_void_p, "out": POINTER(rdm_voxel), "capacity": c_size_t, "count": c_void_p},
         {"low": Rows("float32", ("3",)), "high": Rows("float32", ("3",))}, True,
@@ -5395,7 +5408,8 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"m": c_void_p, "points": c_void_p, "count": c_size_t, "most": c_float, "distance": c_void_p},
         {"points": Rows("float32", ("count", "3")), "distance": Rows("float32", ("count",))}, True,
         """distance [count] from each of points [count][3] to the nearest point of an occupied voxel, m;
-        `most` when none is that near.
+        `most` when none is that near. ARGUMENT for a point that is not finite; nothing is written
+        then.
         """),
     "rdm_map_get_grid": Function(
         c_int32, {"m": c_void_p, "pose": c_void_p, "n": c_void_p, "side": c_float, "out": c_void_p},
@@ -5665,7 +5679,9 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_shield_get_row": Function(
         c_int32, {"shield": c_void_p, "pool": c_void_p, "env": c_int32, "io": POINTER(rdm_shield_row)},
         {}, True,
-        """What was done in the last decision of world env."""),
+        """What was done in the last decision of world env; kind OWN before the first one. ARGUMENT for a
+        pool that rdm_shield_act does not take.
+        """),
     "rdm_shield_get_kinds": Function(
         c_int32, {"shield": c_void_p, "kind": c_void_p},
         {"kind": Rows("int32", ("num_envs",))}, True,
@@ -5684,13 +5700,15 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"shield": c_void_p, "pool": c_void_p, "env": c_int32, "plan": c_void_p, "capacity": c_size_t, "size": c_void_p},
         {"plan": Rows("float32", ("capacity",))}, True,
         """Writes the present plan of world env to plan [capacity], a row of action_dim numbers for each
-        decision from now to the end; *size is how many numbers there are, 0 without a plan.
+        decision from now to the end; *size is how many numbers there are, 0 without a plan. ARGUMENT
+        for a pool that rdm_shield_act does not take.
         """),
     "rdm_shield_get_stats": Function(
         c_int32, {"shield": c_void_p, "io": POINTER(rdm_shield_stats)},
         {}, True,
         """Writes the present plan of world env to plan [capacity], a row of action_dim numbers for each
-        decision from now to the end; *size is how many numbers there are, 0 without a plan.
+        decision from now to the end; *size is how many numbers there are, 0 without a plan. ARGUMENT
+        for a pool that rdm_shield_act does not take.
         """),
     "rdm_shield_reset": Function(
         c_int32, {"shield": c_void_p, "mask": c_void_p},
@@ -5806,8 +5824,9 @@ FUNCTIONS: dict[str, Function] = {
         begin_step adds a row with the pool's obs and action, and label [num_envs][action_dim] (NULL: as
         the action); actions and labels are clipped to [-1, 1]. end_step adds the step's reward, costs
         and flags to it; several steps between two begin_step make one row, of sums. A world that ended
-        begins an episode with its next row; one that a pool with next-step autoreset is about to reset
-        gets no row. A recording follows one pool at a time: rows of another one begin new episodes.
+        begins an episode with its next row; one in which no episode runs, or that a pool with next-step
+        autoreset is about to reset, gets no row. STATE for a world that was never reset. A recording
+        follows one pool at a time: rows of another one begin new episodes.
         """),
     "rdm_recording_end_step": Function(
         c_int32, {"r": c_void_p, "p": c_void_p, "mask": c_void_p},
@@ -5816,8 +5835,9 @@ FUNCTIONS: dict[str, Function] = {
         begin_step adds a row with the pool's obs and action, and label [num_envs][action_dim] (NULL: as
         the action); actions and labels are clipped to [-1, 1]. end_step adds the step's reward, costs
         and flags to it; several steps between two begin_step make one row, of sums. A world that ended
-        begins an episode with its next row; one that a pool with next-step autoreset is about to reset
-        gets no row. A recording follows one pool at a time: rows of another one begin new episodes.
+        begins an episode with its next row; one in which no episode runs, or that a pool with next-step
+        autoreset is about to reset, gets no row. STATE for a world that was never reset. A recording
+        follows one pool at a time: rows of another one begin new episodes.
         """),
     "rdm_recording_filter": Function(
         c_int32, {"r": c_void_p, "need_success": c_int32, "max_cost": c_void_p, "dropped": c_void_p},
@@ -6000,7 +6020,8 @@ FUNCTIONS: dict[str, Function] = {
         """Forward kinematics for joints q [num_links], in the root frame: writes the poses of the links to
         links [num_links], of the flange to *flange, of the fingertips to tips [num_fingers][3] and of
         the palm to *palm (origin at hold_p, y into the palm, z as the fingers point). flange, tips and
-        palm may be NULL.
+        palm may be NULL. UNSUPPORTED where the flange or the palm is asked of a robot without one;
+        nothing is written then.
         """),
     "rdm_robot_reach": Function(
         c_int32, {"robot": c_int32, "flange": c_void_p, "q": c_void_p, "found": c_void_p},
@@ -6220,7 +6241,7 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"world": c_void_p, "body": c_int32, "motion": POINTER(rdm_motion)},
         {}, True,
         """Place a free body or a free base; or set joints q [n] and velocities qd [n] (NULL: 0) of a robot
-        of n joints, within their ranges, and with them the targets of its drives.
+        of n joints, clipped to their ranges, and with them the targets of its drives.
         """),
     "rdm_world_set_base": Function(
         c_int32, {"world": c_void_p, "robot": c_int32, "motion": POINTER(rdm_motion)},
@@ -6233,16 +6254,16 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_world_set_targets": Function(
         c_int32, {"world": c_void_p, "first": c_int32, "targets": c_void_p, "n": c_size_t},
         {"targets": Rows("float64", ("n",))}, True,
-        """Set the targets of drives: targets [n] (rad, m) of the joints from `first` on; or commands [n] in
-        [-1, 1], all n of a robot, which its description turns into targets (by ranges or curves, no
-        faster than its joints' velocity).
+        """Set the targets of drives: targets [n] (rad, m) of the joints from `first` on; or commands [n],
+        clipped to [-1, 1], all n of a robot, which its description turns into targets (by ranges or
+        curves, no faster than its joints' velocity).
         """),
     "rdm_world_set_commands": Function(
         c_int32, {"world": c_void_p, "robot": c_int32, "commands": c_void_p, "n": c_size_t},
         {"commands": Rows("float64", ("n",))}, True,
-        """Set the targets of drives: targets [n] (rad, m) of the joints from `first` on; or commands [n] in
-        [-1, 1], all n of a robot, which its description turns into targets (by ranges or curves, no
-        faster than its joints' velocity).
+        """Set the targets of drives: targets [n] (rad, m) of the joints from `first` on; or commands [n],
+        clipped to [-1, 1], all n of a robot, which its description turns into targets (by ranges or
+        curves, no faster than its joints' velocity).
         """),
     "rdm_world_set_feedforward": Function(
         c_int32, {"world": c_void_p, "first": c_int32, "efforts": c_void_p, "n": c_size_t},
@@ -6288,16 +6309,18 @@ FUNCTIONS: dict[str, Function] = {
         {"x": Rows("float64", ("n", "count", "width"))}, True,
         """Gets or sets quantity `what` of items first to first + count - 1 in each of n worlds, in x
         [n][count][width], where width is the number of doubles of one. Setting does what the function
-        for one world does, row by row: on an error, the rows before it are set. RANGE for items that the
-        scene does not have, and for a count that is not that of items which are only set together.
+        for one world does, row by row: on an error, the rows before it are set, or written. At most
+        65536 worlds and 4096 items. RANGE for items that the scene does not have, and for a count that
+        is not that of items which are only set together.
         """),
     "rdm_world_set_many": Function(
         c_int32, {"worlds": POINTER(c_void_p), "n": c_size_t, "what": c_int32, "first": c_int32, "count": c_size_t, "x": c_void_p},
         {"x": Rows("float64", ("n", "count", "width"))}, True,
         """Gets or sets quantity `what` of items first to first + count - 1 in each of n worlds, in x
         [n][count][width], where width is the number of doubles of one. Setting does what the function
-        for one world does, row by row: on an error, the rows before it are set. RANGE for items that the
-        scene does not have, and for a count that is not that of items which are only set together.
+        for one world does, row by row: on an error, the rows before it are set, or written. At most
+        65536 worlds and 4096 items. RANGE for items that the scene does not have, and for a count that
+        is not that of items which are only set together.
         """),
     "rdm_random_bits": Function(
         c_uint64, {"random": POINTER(rdm_random)},
@@ -6306,7 +6329,7 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_random_uniform": Function(
         c_double, {"random": POINTER(rdm_random), "low": c_double, "high": c_double},
         {}, True,
-        """in [low, high)"""),
+        """in [low, high), up to rounding"""),
     "rdm_random_normal": Function(
         c_double, {"random": POINTER(rdm_random)},
         {}, True,

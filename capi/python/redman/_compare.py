@@ -140,7 +140,7 @@ def _runs(given: Any) -> Iterable[Run]:
         yield given
     elif isinstance(given, (str, os.PathLike)):
         path = Path(given)
-        inside = sorted(found.parent for found in path.glob("*/progress.csv"))
+        inside = sorted(found.parent for found in path.rglob("config.json") if (found.parent / "progress.csv").exists())
         if (path / "progress.csv").exists() or not inside:
             yield Run.load(path)
         else:

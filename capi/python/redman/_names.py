@@ -15,7 +15,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 # What other libraries call our options.
 WORDS = {
     "lr": "learning_rate", "gamma": "discount", "lam": "lambda", "gae_lambda": "lambda", "clip_range": "clip",
-    "clip_ratio": "clip", "ent_coef": "entropy_bonus", "entropy_coef": "entropy_bonus", "hidden_sizes": "hidden",
+    "clip_ratio": "clip", "ent_coef": "entropy", "entropy_coef": "entropy", "hidden_sizes": "hidden",
     "net_arch": "hidden", "n_epochs": "passes", "update_iters": "passes", "target_kl": "kl_target",
     "n_steps": "horizon", "frame_skip": "action_repeat", "max_episode_steps": "max_steps", "episode_length": "max_steps",
     "lambda_lr": "multiplier_lr", "obs_normalize": "normalize_obs"}

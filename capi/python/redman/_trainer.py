@@ -280,7 +280,7 @@ class Trainer(Training):
                            costs=own_costs, ranks=ranks)
         self._asked = (settings_texts(lib.rdm_agent_get_settings, self.agent._open()),
                        settings_texts(lib.rdm_pool_get_settings, self._pool._open()))
-        self.cost_names, self.limits = names, self.agent.cost_limits
+        self.cost_names, self.limits = names, self._rated(self.agent.cost_limits)
         self._magnitudes = learns_magnitudes(self.agent) and s.own is None
         alone = self._magnitudes or s.own is not None
         self._judge = Pool(s.task, _SELECTION_EPISODES, s.seed, s.threads, autoreset="off",
@@ -419,6 +419,16 @@ class Trainer(Training):
         except (FormatError, StateError, ArgumentError) as error:
             raise type(error)(f"cannot resume from {checkpoint}: {error}") from None
         self._note, self._saved_epoch = note, note.epoch
+
+    def _rated(self, limits: list[Optional[float]]) -> list[Optional[float]]:
+        """With option cost_limit_per_step the limit of an episode is that of its control steps: a policy is kept and reported by it."""
+        rate = self.agent.options.get("cost_limit_per_step", -1)
+        if not limits or float(rate) < 0:
+            return limits
+        given = [text for text in self.settings.limits if "=" not in text or folded(text.split("=", 1)[0]) == "cost"]
+        if given:
+            raise UsageError(f"cost_limits={given[0]} and cost_limit_per_step={rate}: both are limits on the first cost; give one")
+        return [float(rate) * self._pool.spec.max_steps, *limits[1:]]
 
     def config(self) -> dict[str, Any]:
         """The members of config.json: the settings of the run, with all defaults written out."""

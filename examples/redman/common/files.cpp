@@ -264,6 +264,21 @@ void check_replaceable(const std::string& path) {
     throw Failure("cannot write " + path + ": it is a file of a training run; give another name");
 }
 
+void check_outputs(const FilesByFlag& written, const FilesByFlag& read) {
+  FilesByFlag others = read;
+  for (const auto& [flag, path] : written) {
+    if (path.empty()) continue;
+    check_replaceable(path);
+    for (const auto& [name, other] : others) {
+      std::error_code error;
+      if (!other.empty() && (fs::path(path).lexically_normal() == fs::path(other).lexically_normal() ||
+                             fs::equivalent(path, other, error)))
+        throw Usage(flag + ' ' + path + ": it is the file of " + name + "; give another name");
+    }
+    others.emplace_back(flag, path);
+  }
+}
+
 void replace_file(const std::string& path, const std::string& bytes) {
   check_replaceable(path);
   PreparedFile file(path, bytes);

@@ -79,6 +79,10 @@ class OpenFile {
 std::string beginning_of(const std::string& path, size_t bytes);
 // Failure when something stands at `path` that is no regular file, or a training's.
 void check_replaceable(const std::string& path);
+// The same of all files that a command is to write, by their flags: {"--out", path}, path "": none. Usage where two are one file,
+// or one is a file that the command reads.
+using FilesByFlag = std::vector<std::pair<std::string, std::string>>;
+void check_outputs(const FilesByFlag& written, const FilesByFlag& read = {});
 // Both steps at once.
 void replace_file(const std::string& path, const std::string& bytes);
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "common/json.hpp"
 #include "common/names.hpp"
 #include "common/numbers.hpp"
 #include "common/objects.hpp"
@@ -77,6 +78,40 @@ void say_worlds(const PoolSettings& pool, int32_t episodes) {
   if (pool.envs_given && pool.envs > episodes)
     std::fprintf(stderr, "--envs %d: only as many worlds are used as there are episodes, %d\n", pool.envs,
                  episodes);
+}
+
+void take_limit_from_sets(std::vector<std::string>& sets, std::vector<std::string>& limits) {
+  const auto is_limit = [](const std::string& s) {
+    return same_name(s.substr(0, s.find('=')), "cost_limit") && s.find('=') != s.npos;
+  };
+  for (const std::string& s : sets) {
+    if (!is_limit(s)) continue;
+    for (const std::string& limit : limits)
+      if (limit.find('=') == limit.npos || same_name(limit.substr(0, limit.find('=')), "cost"))
+        throw Usage("--cost-limit " + limit + " and --set " + s +
+                    ": both are the limit on column 0; give one");
+    limits.push_back(s.substr(s.find('=') + 1));
+  }
+  sets.erase(std::remove_if(sets.begin(), sets.end(), is_limit), sets.end());
+  need_one_limit_each(limits);
+}
+
+void need_one_limit_each(const std::vector<std::string>& limits) {
+  const auto column = [](const std::string& text) {
+    return text.find('=') == text.npos ? std::string("cost") : text.substr(0, text.find('='));
+  };
+  for (size_t i = 0; i < limits.size(); ++i)
+    for (size_t k = 0; k < i; ++k)
+      if (same_name(column(limits[i]), column(limits[k])))
+        throw Usage("--cost-limit: column " + column(limits[i]) + " has two limits, " + limits[k] + " and " +
+                    limits[i]);
+}
+
+int64_t whole_number(double value, const std::string& flag) {
+  if (!(value >= 1 && value <= static_cast<double>(kMostExact)) || value != std::floor(value))
+    throw Usage(flag + ' ' + number_text(value) + ": it is not a whole number of 1 .. " +
+                std::to_string(kMostExact));
+  return static_cast<int64_t>(value);
 }
 
 void say_budget(const PoolSettings& pool, const std::vector<std::string>& limits) {

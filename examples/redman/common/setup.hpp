@@ -68,6 +68,13 @@ void apply_sets(const std::vector<std::string>& sets, PoolSettings& pool, AgentS
 
 // Says so where more worlds were asked for than there are episodes, of which each is played in one.
 void say_worlds(const PoolSettings& pool, int32_t episodes);
+// Moves the option cost_limit of an algorithm, the limit on column 0, from texts of --set to those of --cost-limit. Usage where
+// both give one.
+void take_limit_from_sets(std::vector<std::string>& sets, std::vector<std::string>& limits);
+// Usage where texts of --cost-limit give one column two.
+void need_one_limit_each(const std::vector<std::string>& limits);
+// Of a flag that takes 1e6 too; Usage for a fraction and outside of 1 .. 2^53.
+int64_t whole_number(double value, const std::string& flag);
 // Says so where texts of --cost-limit leave the limit of option `budget` as it is.
 void say_budget(const PoolSettings& pool, const std::vector<std::string>& limits);
 

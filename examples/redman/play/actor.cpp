@@ -109,6 +109,7 @@ ActorChoice choose_actor(const std::string& word, const std::string& task) {
   if (same_name(run.pool.task, choice.task)) {
     choice.options = run.pool.options;
     choice.limits = run.limits;
+    if (run.rated_limit >= 0) choice.limits.push_back(number_text(run.rated_limit));
     if (run.functions)
       std::fprintf(
           stderr,

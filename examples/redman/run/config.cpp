@@ -157,6 +157,9 @@ RunSettings parse_config(const char* text, size_t size) {
   s.agent.algo = text_at(json, "algo");
   s.agent.options = from_sets(texts_at(json, "set_algo"), "set_algo");
   s.limits = texts_at(json, "set_cost_limit");
+  for (const auto& [key, value] : s.agent.options)
+    if (same_name(key, "cost_limit_per_step") && value[0] != '-')
+      s.rated_limit = number_at(object_at(json, "cost_limits"), "cost", 0, kMostLimit);
   s.steps = integer_at(train, "total_steps", 1, kMostExact);
   s.eval_every = static_cast<int32_t>(integer_at(train, "eval_every", 1, INT32_MAX));
   s.checkpoint_every = static_cast<int32_t>(integer_at(train, "checkpoint_every", 1, INT32_MAX));

@@ -17,6 +17,7 @@ struct RunSettings {
   PoolSettings pool;
   AgentSettings agent;
   std::vector<std::string> limits;  // as --cost-limit had them
+  double rated_limit = -1;          // of an episode's column 0, by option cost_limit_per_step; < 0: not so
   int64_t steps = 1000000;          // control steps, all worlds
   int32_t eval_every = 10;          // epochs
   int32_t checkpoint_every = 10;    // epochs

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 
 #include "common/files.hpp"
 #include "common/json.hpp"
@@ -30,6 +31,18 @@ std::vector<std::string> find_runs(const std::string& folder) {
                                      : "it does not exist" + missing_file_hint(folder)));
   std::sort(found.begin(), found.end());
   return found;
+}
+
+std::vector<RunData> read_runs(const std::vector<std::string>& folders) {
+  std::vector<RunData> runs;
+  std::set<std::string> seen;
+  for (const std::string& folder : folders)
+    for (const std::string& path : find_runs(folder)) {
+      std::error_code error;
+      const std::string whole = std::filesystem::weakly_canonical(path, error).string();
+      if (seen.insert(error ? path : whole).second) runs.push_back(read_run(path));
+    }
+  return runs;
 }
 
 RunData read_run(const std::string& path) {

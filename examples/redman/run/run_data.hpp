@@ -17,6 +17,8 @@ struct RunData : RunLabel {
 
 // The folder itself when it is a run, else every run below it, sorted. Failure when there is none.
 std::vector<std::string> find_runs(const std::string& folder);
+// Of the folders of a command: each run once, however it is named. Failure as of find_runs and read_run.
+std::vector<RunData> read_runs(const std::vector<std::string>& folders);
 // Failure when the folder is no run or has no finished epoch. A last row that is cut short is left out.
 RunData read_run(const std::string& path);
 

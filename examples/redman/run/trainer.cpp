@@ -89,9 +89,23 @@ Trainer::Trainer(RunSettings settings, const Ranks* ranks)
                         ranks ? &ranks->hooks() : nullptr)),
       score_limits_(limits_),
       last_{std::nan(""), std::nan("")} {
+  take_rate();
   if (!handles_costs(settings_.agent.algo, pool_)) score_limits_.assign(limits_.size(), -1);
   if (ranks) redman::check(rdm_pool_set_rank(pool_.get(), ranks->hooks().rank, ranks->count()));
   if (settings_.shield.on) add_shield();
+}
+
+// With option cost_limit_per_step the limit of an episode is that of its control steps: a policy is kept and reported by it.
+void Trainer::take_rate() {
+  const char* const key = "cost_limit_per_step";
+  if (limits_.empty() || !has_option(settings_.agent.algo, key)) return;
+  const double rate = std::strtod(agent_setting(agent_, settings_.agent.algo, key).c_str(), nullptr);
+  if (rate < 0) return;
+  for (const std::string& text : settings_.limits)
+    if (text.find('=') == text.npos || same_name(text.substr(0, text.find('=')), "cost"))
+      throw Usage("--cost-limit " + text + " and --set " + key + '=' + number_text(rate) +
+                  ": both are limits on column 0; give one");
+  limits_[0] = score_limits_[0] = rate * pool_.spec().max_steps;
 }
 
 // Its first backup is the agent itself. What no plan avoids happens, and is counted.

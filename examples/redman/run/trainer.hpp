@@ -46,6 +46,7 @@ class Trainer {
 
  private:
   void add_shield();
+  void take_rate();
   std::string config() const;
   void restore(const std::string& path);
   bool first() const { return !ranks_ || ranks_->first(); }
