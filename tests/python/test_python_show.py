@@ -329,6 +329,10 @@ class Drawn(unittest.TestCase):
 
     def test_folders_are_compared(self):
         with tempfile.TemporaryDirectory() as folder:
+            redman.train("bandit", ["ppo", "ppo_lag"], steps=500, seed=range(2), envs=4, progress=False, out=Path(folder, "all"))
+            self.assertEqual({name: len(runs) for name, runs in redman.compare(Path(folder, "all"), episodes=2).runs.items()},
+                             {"ppo": 2, "ppo_lag": 2})
+        with tempfile.TemporaryDirectory() as folder:
             for seed in (0, 1):
                 redman.train("bandit", steps=500, seed=seed, envs=4, progress=False, out=Path(folder, f"r{seed}"))
             self.assertEqual(redman.compare(folder, episodes=4).rows[0].runs, 2)

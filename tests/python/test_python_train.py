@@ -122,6 +122,15 @@ class AsTheTool(unittest.TestCase):
             redman.train("bandit", steps=100, envs=4, progress=False, out=path, overwrite=True)
 
 
+class Limits(unittest.TestCase):
+    def test_the_limit_of_a_step_is_that_of_an_episode(self):
+        run = redman.train("ball_run", "ppo_lag", steps=400, envs=4, progress=False, max_steps=20, cost_limit_per_step=0.1)
+        self.assertAlmostEqual(run.cost_limits["cost"], 2)
+        self.assertAlmostEqual(run.evaluate(2).cost_limits[0], 2)
+        with self.assertRaisesRegex(redman.UsageError, "both are limits on the first cost"):
+            redman.train("ball_run", "ppo_lag", steps=400, envs=4, progress=False, cost_limit_per_step=0.1, cost_limits=3)
+
+
 class Curves(unittest.TestCase):
     def test_a_torn_row_is_left_out(self):
         with tempfile.TemporaryDirectory() as folder:

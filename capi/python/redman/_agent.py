@@ -105,7 +105,10 @@ class Agent(Taught, Hinted):
     cost_limits: a limit for column 0, one for each column (None, or NaN in an array: no limit), or a dict by the names of
     the costs. A pool gives its dimensions, its task's defaults for learners, start pose and limits; costs, names of columns,
     replace its costs and their limits. For rows of other origin, fields, {name: (offset, count)}, names parts of them for
-    actor_obs and critic_obs. ranks: the place of this process among several that learn together (redman.Ranks). One thread
+    actor_obs and critic_obs; cost_dim is the number of costs, control_dt the seconds of a control step, max_steps the control steps
+    after which an episode's sums are closed (0: never), layout_hash a number that the policy file keeps, and initial_mean
+    [action_dim] the actions that the untrained policy begins around. threads: of the update; 0: the calling thread alone; results
+    are the same for any number. ranks: the place of this process among several that learn together (redman.Ranks). One thread
     uses an agent at a time; others wait.
     """
 

@@ -92,7 +92,9 @@ class Episode(Hinted):
         """Writes a file of the episode, of the kind of its ending: .html, a page in 3D for a browser; .glb, an animation for 3D
         viewers; .png, `strip` moments side by side, or the moment of one control step; .mp4 or .gif, a film.
 
-        Pages are written by the command `redman`, films by the program ffmpeg. camera None: "close", else the first."""
+        Pages are written by the command `redman`, films by the program ffmpeg. camera: name of a camera of the task; None: "close",
+        else the first. width, height: pixels of a picture or film. step: the control step that a .png shows; None: `strip` moments.
+        look: "fine" as for people, "plain" as observations look."""
         ending, view = ending_of(path), self.camera(camera)
         if not self._frames:
             raise StateError("render: the episode has no frames yet")

@@ -33,7 +33,7 @@ class StateError(Error, RuntimeError):
 
 
 class AllocationError(Error, MemoryError):
-    """The allocator refused."""
+    """There is not enough memory: take fewer worlds, or smaller networks."""
 
     code = ResultCode.MEMORY
 
@@ -85,7 +85,7 @@ class CancelledError(Error, RuntimeError):
 
 
 class InternalError(Error, RuntimeError):
-    """A bug in redman."""
+    """A bug in redman: please report it, with what was called."""
 
 
 _CLASS_OF = {kind.code: kind for kind in (

@@ -286,8 +286,9 @@ class Policy(Hinted):
               stochastic: bool = False, seed: int = 0) -> Actor:
         """An Actor that plays this policy in a pool, or in an environment of redman.gym, sb3, safety or omnisafe.
 
-        For worlds of another kind, give their number, the control steps of one of their steps, and the center that they add
-        to actions. stochastic: samples actions, with noise from the seed that is correlated as in training.
+        where: that pool or environment. For worlds of another kind, give their number (num_envs), the control steps of one of their
+        steps (action_repeat), and the center that they add to actions. stochastic: samples actions, with noise from the seed that
+        is correlated as in training.
         """
         return Actor(self, where, num_envs=num_envs, action_repeat=action_repeat, center=center, stochastic=stochastic,
                      seed=seed)
@@ -391,7 +392,12 @@ class Policy(Hinted):
                options: Optional[Options] = None, steps: Optional[int] = None, shield: Shielding = None,
                camera: Optional[str] = None, width: int = 640, height: int = 480, step: Optional[int] = None,
                strip: int = 6) -> None:
-        """Plays an episode and writes it to a file: .html, .glb, .png, .mp4 or .gif (redman.Episode.render)."""
+        """Plays an episode and writes it to a file: .html, .glb, .png, .mp4 or .gif.
+
+        task, seed, options, steps, shield: as in episode. camera: name of a camera of the task; None: "close", else the first.
+        width, height: pixels of a picture or film. step: for .png, the control step that is shown; None: `strip` moments of the
+        episode side by side.
+        """
         ending_of(path)
         self.episode(task, seed=seed, options=options, steps=steps, shield=shield).render(
             path, camera=camera, width=width, height=height, step=step, strip=strip)

@@ -68,7 +68,8 @@ def _kinds(task: str) -> dict[str, int]:
 
 
 def memory(task: _discovery.TaskName, num_envs: int = 1, options: Optional[Options] = None) -> tuple[int, int]:
-    """Bytes that a pool would take: by the library, exact, and by the physics engine, an estimate."""
+    """Bytes that a pool of num_envs worlds of a task with these options would take: by the library, exact, and by the physics engine,
+    an estimate. No world is made."""
     config = _struct({"task": _discovery.task_name(task), "num_envs": num_envs, "seed": 0, "threads": 0, "autoreset": "same_step",
                       "options": dict(options or {})})
     ours, engines = c_size_t(), c_size_t()

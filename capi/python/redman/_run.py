@@ -111,7 +111,9 @@ class Run(Hinted):
     def evaluate(self, episodes: int = 100, num_envs: int = 16, seed: int = 0, threads: Optional[int] = None, *,
                  shield: Shielding = None, shield_policy: Optional[Backup] = None) -> Evaluation:
         """Evaluates the policy on episodes that were not used to choose it: those of `redman.evaluate(folder)` and of
-        `redman eval --policy FOLDER`. The report at the end of `redman train` uses seed=run.seed + 1_000_000."""
+        `redman eval --policy FOLDER`. The report at the end of `redman train` uses seed=run.seed + 1_000_000. num_envs: worlds that
+        play side by side; threads: None uses all cores; the episodes depend on neither the latter nor the machine. shield,
+        shield_policy: as in redman.evaluate."""
         return evaluate(self.policy, episodes=episodes, num_envs=num_envs, seed=seed, threads=threads, shield=shield,
                         shield_policy=shield_policy)
 

@@ -29,7 +29,8 @@ def sweep(tasks: Words, algos: Words = "ppo_lag", seeds: Union[str, int, Iterabl
         done = redman.sweep(["ball_run", "car_run"], ["ppo_lag", "cpo"], seeds=5, steps=1e6, out="runs/sweep")
         done["rows"][0]["return_iqm"], done["rows"][0]["return_interval"]
 
-    seeds: their number, or a list of seeds. options: options of task and algorithm for all runs. vary: {key: values}, a
+    seeds: their number, or a list of seeds. algos: algorithms, each on every task. steps: control steps of each run. envs: worlds of
+    a run. cost_limit: the limit on the first cost; None: the task's. options: options of task and algorithm for all runs. vary: {key: values}, a
     configuration for each value. jobs: number of runs at a time; 0: one per core. minutes: time after which runs are stopped. The
     same call continues runs that were stopped, for any reason, and does not repeat complete ones. A wrong setting raises
     ArgumentError before anything starts. The folder contains run folders as the tool writes them, and a table in sweep.md.

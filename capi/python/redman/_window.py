@@ -370,7 +370,8 @@ def view(shown: Any, *, policy: Union[None, Policy, str, os.PathLike[str]] = Non
     changes in worlds that nobody touches. A policy, a run or a task is shown by worlds of the command `redman view`, with all that
     its page can do: go back, options, the shield, demonstrations. For a task or costs in Python, this process plays it.
 
-    policy: what acts in the task, "trained" for the bundled one. num_envs: worlds side by side, at most 64; of a pool, from env on.
+    policy: what acts in the task, "trained" for the bundled one. seed: of the worlds that are made. port: of the page; 0: a free one.
+    paused: whether it begins paused. num_envs: worlds side by side, at most 64; of a pool, from env on.
     record: the .npz file that the page's button *record* writes: whole episodes of the watched world as somebody played them,
     which train(from_=...) takes. Without it worlds of the command write demonstration.npz, and a pool's page has no such button.
     shield: of a pool, a redman.Shield of it: the page has a button that puts the program's actions, and those by hand, through it.
