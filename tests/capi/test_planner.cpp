@@ -130,10 +130,12 @@ TEST(Plans, KeepTheLimitWhereReturnWouldBreakIt) {
 TEST(Plans, KeepTheLimitOfThePool) {
   const Pool pool = pool_of("ball_run", "budget=show\nlimit=0");
   rdm_planner_config c = config_of(pool, "method=cem\nsamples=64\nhorizon=32\niterations=4");
-  const std::vector<double> none(1, 0.0);
+  double none[RDM_MAX_COSTS];
+  std::fill_n(none, RDM_MAX_COSTS, -1);
+  none[0] = 0;
   std::vector<float> action(2), own(2);
   const rdm_plan_info pools = act(planner_of(c), pool, action.data());
-  c.cost_limits = none.data();
+  c.cost_limits = none;
   const rdm_plan_info given = act(planner_of(c), pool, own.data());
   EXPECT_EQ(action, own);
   EXPECT_EQ(pools.cost[0], given.cost[0]);
