@@ -1,6 +1,6 @@
 // MAPPO (Yu et al. 2022, "The surprising effectiveness of PPO in cooperative multi-agent games") and MAPPO-Lagrangian
-// (Gu et al. 2023, "Safe multi-agent reinforcement learning for multi-robot control"): each group of a team (core/groups.hpp) has an actor of
-// its own, which sees its own fields, and all share the critics, which see the whole row.
+// (Gu et al. 2023, "Safe multi-agent reinforcement learning for multi-robot control"): each group of a team
+// (core/groups.hpp) has an actor of its own, which sees its own fields, and all share the critics, which see the whole row.
 //
 //   max over theta_g of the mean of min(rho_g A, clip(rho_g) A),  rho_g = pi_g(a_g | o_g) / pi_g,old(a_g | o_g)
 //

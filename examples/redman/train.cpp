@@ -206,19 +206,15 @@ Report train_alone(const TrainFlags& flags, const Ranks* ranks) {
   trainer.run();
 
   const RunSettings& run = trainer.settings();
-  const auto costs = task_costs(find_task(run.pool.task));
-  std::vector<std::string> limits;  // as the learner has them
-  for (size_t k = 0; k < costs.size(); ++k)
-    limits.push_back(std::string(costs[k].name) + '=' + number_text(trainer.limits()[k]));
   PoolSettings settings = run.pool;
   settings.seed += Trainer::kEvalSeed;
   settings.envs = kEvalEnvs;
   settings.magnitudes = learns_magnitudes(run.agent);
   ActorChoice choice = choose_actor(trainer.folder().policy());
-  const Evaluation e = evaluate(choice, settings, limits, kEvalEpisodes, false);
+  const Evaluation e = evaluate(choice, settings, choice.limits, kEvalEpisodes, false);
   choice.shield = run.shield;
   const Evaluation shielded =
-      run.shield.on ? evaluate(choice, settings, limits, kEvalEpisodes, false) : Evaluation{};
+      run.shield.on ? evaluate(choice, settings, choice.limits, kEvalEpisodes, false) : Evaluation{};
   const Summary& s = e.summary;
   say_trouble(trainer.trouble(), "training");
   say_trouble(s.trouble, "evaluation");

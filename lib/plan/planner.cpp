@@ -100,8 +100,8 @@ void Planner::make_rollouts(const PlannerConfig& c) {
   action_dim_ = pool.task().action_dim();
   cost_dim_ = pool.cost_dim();
   rule_.num_costs = cost_dim_;
+  pools_limit_ = !c.cost_limits;
   for (int32_t k = 0; k < cost_dim_; ++k) {
-    pools_limit_ = !c.cost_limits;
     limit_[k] = c.cost_limits ? c.cost_limits[k] : info.costs[k].limit;
     if (std::isnan(limit_[k])) fail(Code::kArgument, "cost_limits: entry %d is not a number", k);
   }

@@ -141,6 +141,11 @@ json cost_mean eval --policy rated --episodes 2
 grep -q '"cost_limits":\[2.0' out || { echo "eval has another limit: $(cat out)"; failed=1; }
 grep -q '"cost": 2.0' rated/config.json || { echo "config.json has another limit"; failed=1; }
 
+press=$here/../../examples/scenes/press.task  # whose column 0 has another name
+json cost train --task "$press" --envs 2 --steps 200 --set max_steps=20 --set horizon=20 --set cost_limit_per_step=0.1 --out pressed
+json cost_mean eval --policy pressed --episodes 1
+grep -q '"cost_limits":\[2.0' out || { echo "a task of one's own has another limit: $(cat out)"; failed=1; }
+
 # Files that are read are not written over, and two files need two names.
 cp run/policy.rdm kept.rdm
 expect 2 'it is the file of --policy' export --policy kept.rdm --c kept.rdm

@@ -280,7 +280,8 @@ class Trainer(Training):
                            costs=own_costs, ranks=ranks)
         self._asked = (settings_texts(lib.rdm_agent_get_settings, self.agent._open()),
                        settings_texts(lib.rdm_pool_get_settings, self._pool._open()))
-        self.cost_names, self.limits = names, self._rated(self.agent.cost_limits)
+        self.cost_names = names
+        self.limits = self._rated(self.agent.cost_limits)
         self._magnitudes = learns_magnitudes(self.agent) and s.own is None
         alone = self._magnitudes or s.own is not None
         self._judge = Pool(s.task, _SELECTION_EPISODES, s.seed, s.threads, autoreset="off",
@@ -425,7 +426,7 @@ class Trainer(Training):
         rate = self.agent.options.get("cost_limit_per_step", -1)
         if not limits or float(rate) < 0:
             return limits
-        given = [text for text in self.settings.limits if "=" not in text or folded(text.split("=", 1)[0]) == "cost"]
+        given = [text for text in self.settings.limits if "=" not in text or folded(text.split("=", 1)[0]) == folded(self.cost_names[0])]
         if given:
             raise UsageError(f"cost_limits={given[0]} and cost_limit_per_step={rate}: both are limits on the first cost; give one")
         return [float(rate) * self._pool.spec.max_steps, *limits[1:]]

@@ -87,7 +87,7 @@ void take_limit_from_sets(std::vector<std::string>& sets, std::vector<std::strin
   for (const std::string& s : sets) {
     if (!is_limit(s)) continue;
     for (const std::string& limit : limits)
-      if (limit.find('=') == limit.npos || same_name(limit.substr(0, limit.find('=')), "cost"))
+      if (limits_first(limit))
         throw Usage("--cost-limit " + limit + " and --set " + s +
                     ": both are the limit on column 0; give one");
     limits.push_back(s.substr(s.find('=') + 1));
@@ -96,15 +96,21 @@ void take_limit_from_sets(std::vector<std::string>& sets, std::vector<std::strin
   need_one_limit_each(limits);
 }
 
+std::string column_of_limit(const std::string& text) {
+  const size_t sign = text.find('=');
+  return sign == text.npos ? "cost" : text.substr(0, sign);
+}
+
+bool limits_first(const std::string& text) {
+  return same_name(column_of_limit(text), "cost");
+}
+
 void need_one_limit_each(const std::vector<std::string>& limits) {
-  const auto column = [](const std::string& text) {
-    return text.find('=') == text.npos ? std::string("cost") : text.substr(0, text.find('='));
-  };
   for (size_t i = 0; i < limits.size(); ++i)
     for (size_t k = 0; k < i; ++k)
-      if (same_name(column(limits[i]), column(limits[k])))
-        throw Usage("--cost-limit: column " + column(limits[i]) + " has two limits, " + limits[k] + " and " +
-                    limits[i]);
+      if (same_name(column_of_limit(limits[i]), column_of_limit(limits[k])))
+        throw Usage("--cost-limit: column " + column_of_limit(limits[i]) + " has two limits, " + limits[k] +
+                    " and " + limits[i]);
 }
 
 int64_t whole_number(double value, const std::string& flag) {
@@ -121,11 +127,10 @@ void say_budget(const PoolSettings& pool, const std::vector<std::string>& limits
     if (same_name(key, "limit") || same_name(key, "limit_range")) return;
   }
   for (const std::string& text : limits) {
-    const size_t sign = text.find('=');
-    if (budget && (sign == text.npos || same_name(text.substr(0, sign), "cost")))
+    if (budget && limits_first(text))
       std::fprintf(
           stderr, "--cost-limit %s: option budget has a limit of its own, which stays; give --set limit=%s\n",
-          text.c_str(), text.substr(sign + 1).c_str());
+          text.c_str(), text.substr(text.find('=') + 1).c_str());
   }
 }
 

@@ -159,7 +159,8 @@ RunSettings parse_config(const char* text, size_t size) {
   s.limits = texts_at(json, "set_cost_limit");
   for (const auto& [key, value] : s.agent.options)
     if (same_name(key, "cost_limit_per_step") && value[0] != '-')
-      s.rated_limit = number_at(object_at(json, "cost_limits"), "cost", 0, kMostLimit);
+      s.rated_limit = std::strtod(value.c_str(), nullptr) *
+                      std::strtod(text_at(object_at(json, "env_cfgs"), "max_steps").c_str(), nullptr);
   s.steps = integer_at(train, "total_steps", 1, kMostExact);
   s.eval_every = static_cast<int32_t>(integer_at(train, "eval_every", 1, INT32_MAX));
   s.checkpoint_every = static_cast<int32_t>(integer_at(train, "checkpoint_every", 1, INT32_MAX));
