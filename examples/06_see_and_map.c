@@ -8,22 +8,25 @@
 #define RDM_EXPERIMENTAL /* what worlds see, and maps: the last part of the header */
 #include <redman/redman.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { WORLDS = 2, POINTS = 256 };
 
 /* Numbers of the shapes whose names begin with one of the words, to be left out of a map: what moves by
- * itself. */
-static size_t shapes_named(const rdm_pool* pool, int num_shapes, const char* const* words, int32_t* out,
-                           size_t capacity) {
-  size_t count = 0;
+ * itself. out [num_shapes]; fails as rdm_pool_shape_at does. */
+static rdm_result shapes_named(const rdm_pool* pool, int num_shapes, const char* const* words, int32_t* out,
+                               size_t* count) {
+  *count = 0;
   for (int i = 0; i < num_shapes; ++i) {
     rdm_shape_info shape = RDM_INIT(rdm_shape_info);
-    if (rdm_pool_shape_at(pool, i, &shape) != RDM_OK) break;
-    for (const char* const* word = words; *word; ++word)
-      if (strncmp(shape.name, *word, strlen(*word)) == 0 && count < capacity) out[count++] = i;
+    const rdm_result r = rdm_pool_shape_at(pool, i, &shape);
+    if (r != RDM_OK) return r;
+    const char* const* word = words;
+    while (*word && strncmp(shape.name, *word, strlen(*word)) != 0) ++word;
+    if (*word) out[(*count)++] = i;
   }
-  return count;
+  return RDM_OK;
 }
 
 int main(int argc, char** argv) {
@@ -33,7 +36,8 @@ int main(int argc, char** argv) {
   /* the broom's head, 0.5 m wide, half way down the room: along the middle, and half a metre to the left */
   const float half[3] = {0.25f, 0.05f, 0.3f};
   const rdm_pose plans[2] = {{.p = {0, -1.6, 0.3}}, {.p = {-0.5, -1.6, 0.3}}};
-  int32_t skip[128], meets;
+  int32_t *skip = NULL, meets;
+  size_t num_skip = 0;
   uint64_t dropped = 0;
   rdm_pool_config pool_config;
   rdm_map_config map_config;
@@ -63,7 +67,9 @@ int main(int argc, char** argv) {
   map_config.resolution = 0.04;
   map_config.max_range = 6;
   if (rdm_map_create(&map, &map_config)) goto done;
-  const size_t num_skip = shapes_named(pool, spec.num_shapes, movable, skip, 128);
+  skip = malloc((size_t)spec.num_shapes * sizeof *skip);
+  if (!skip) goto done;
+  if (shapes_named(pool, spec.num_shapes, movable, skip, &num_skip)) goto done;
   for (int i = 0; i < 3; ++i)
     if (rdm_map_scan(map, pool, 0, cameras[i], 128, 128, skip, num_skip, &dropped)) goto done;
   if (rdm_map_get_info(map, &info)) goto done;
@@ -81,7 +87,9 @@ int main(int argc, char** argv) {
   if (argc > 1 && rdm_map_write_file(map, argv[1])) goto done;
   status = 0;
 done:
-  if (status) fprintf(stderr, "06_see_and_map: %s\n", rdm_last_error());
+  if (status)
+    fprintf(stderr, "06_see_and_map: %s\n", pool && map && !skip ? "out of memory" : rdm_last_error());
+  free(skip);
   rdm_map_destroy(map);
   rdm_pool_destroy(pool);
   return status;

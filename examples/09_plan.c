@@ -11,9 +11,10 @@
 #include <string.h>
 #include <time.h>
 
-/* Lines of settings out of a list with commas. */
+/* Lines of settings out of a list with commas; NULL for one that is longer than text [size]. */
 static const char* lines(char* text, size_t size, const char* list) {
-  snprintf(text, size, "%s", list);
+  if (strlen(list) >= size) return NULL;
+  memcpy(text, list, strlen(list) + 1);
   for (char* c = text; *c; ++c)
     if (*c == ',') *c = '\n';
   return text;
@@ -32,16 +33,21 @@ int main(int argc, char** argv) {
   double ret = 0, cost = 0, steps = 0, seconds = 0;
   int falls = 0, successes = 0, status = 1;
 
+  if (episodes < 1 || !lines(planning, sizeof planning, argc > 3 ? argv[3] : "samples=32,horizon=20") ||
+      !lines(options, sizeof options, argc > 4 ? argv[4] : "")) {
+    fprintf(stderr, "09_plan: fewer than 1 episode, or more than 511 characters of options\n");
+    return 2;
+  }
   if (rdm_pool_config_init(&pool_config, sizeof pool_config)) goto done;
   pool_config.task = task;
   pool_config.autoreset = RDM_AUTORESET_OFF;
-  pool_config.settings = lines(options, sizeof options, argc > 4 ? argv[4] : "");
+  pool_config.settings = options;
   if (rdm_pool_create(&pool, &pool_config)) goto done;
   if (rdm_pool_get_buffers(pool, &b)) goto done;
 
   if (rdm_planner_config_init(&config, sizeof config)) goto done;
   config.pool = pool; /* its task and options: what the rollouts have */
-  config.settings = lines(planning, sizeof planning, argc > 3 ? argv[3] : "samples=32,horizon=20");
+  config.settings = planning;
   if (rdm_planner_create(&planner, &config)) goto done;
 
   for (int e = 0; e < episodes; ++e) {

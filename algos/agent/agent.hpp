@@ -255,6 +255,7 @@ class Agent {
     Batch batch;
     int32_t block = 0, row = 0;  // that spread_on comes to next
     BatchSums last, all;         // of this pass so far, of those before
+    bool clips = false;          // all.clipped was counted
     Epoch epoch;
   };
   void unit(bool whole);

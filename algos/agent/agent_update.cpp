@@ -195,6 +195,7 @@ void Agent::end_pass(const PolicyLoss* policy) {
   phase_ = Phase::kPass;
   if (run_.second) return;
   run_.all += run_.last;
+  run_.clips = policy && policy->clips();
   ++learned_.passes;
   if (!policy || resolved_.shared.early_stop_kl <= 0) return;
   job_ = learner_.begin_measure(whole_batch());
@@ -209,6 +210,10 @@ void Agent::end_update() {
     learned_.mean = run_.all.scaled(1 / (count * learned_.passes));
     const double rounds = warm ? 1 : turns();
     learned_.mean.reward_loss *= rounds, learned_.mean.cost_loss *= rounds;
+    // what this update did not learn has no loss
+    if (!run_.clips) learned_.mean.clipped = kNothing;
+    if (warm) learned_.mean.loss = kNothing;
+    if (resolved_.adapts()) learned_.mean.reward_loss = learned_.mean.cost_loss = kNothing;
   }
   const bool own = !warm && !resolved_.adapts();  // the algorithm's step
   if (own && valid_rows() > 0) report(learned_);
@@ -338,6 +343,7 @@ uint64_t Agent::learned_hash() const {
 void Agent::fill_episodes(const EpisodeStats& stats, const EpochTotals& totals, Epoch& e) const {
   e.episodes = stats.finished;
   e.ret = stats.ret;
+  std::fill(std::begin(e.cost), std::end(e.cost), kNothing);
   std::copy_n(stats.cost, resolved_.config.cost_dim, e.cost);
   const bool by_rate = resolved_.rate_steps > 0 || stats.finished == 0;
   e.cost_per_step = by_rate ? totals.rate(0) : stats.cost_per_step;
@@ -372,20 +378,18 @@ void Agent::fill_learned(double rate, Epoch& e) {
   e.learning_rate = rate;
   e.passes = learned_.passes;
   e.cost_signal = raw_costs();
-  if (valid_rows() == 0) {
-    for (double* x : {&e.kl, &e.loss_policy, &e.loss_reward_value, &e.loss_cost_value, &e.clip_fraction,
-                      &e.value_reward, &e.value_cost})
-      *x = kNothing;
-    return;
-  }
+  for (double* x : {&e.kl, &e.loss_policy, &e.loss_reward_value, &e.loss_cost_value, &e.clip_fraction,
+                    &e.value_reward, &e.value_cost})
+    *x = kNothing;
+  if (valid_rows() == 0) return;
   e.kl = learned_.last_kl;
   e.loss_policy = learned_.mean.loss;
   e.loss_reward_value = learned_.mean.reward_loss;
-  e.loss_cost_value = learned_.mean.cost_loss;
-  e.clip_fraction = learned_.mean.clipped;
   e.value_reward = mean_value(false);
-  if (resolved_.values_costs || (resolved_.off_policy() && num_limited() > 0))
-    e.value_cost = mean_value(true);
+  e.clip_fraction = learned_.mean.clipped;
+  if (!resolved_.values_costs && (!resolved_.off_policy() || num_limited() == 0)) return;
+  e.loss_cost_value = learned_.mean.cost_loss;
+  e.value_cost = mean_value(true);
 }
 
 }  // namespace rdm

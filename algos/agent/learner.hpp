@@ -58,6 +58,8 @@ class PolicyLoss {
   virtual void add(const PolicyChunk& chunk) const = 0;
   // The entropy bonus and the imitation term belong to this loss.
   virtual bool explores() const { return true; }
+  // Whether it counts samples that its bound on the policy leaves out.
+  virtual bool clips() const { return false; }
 
  protected:
   ~PolicyLoss() = default;

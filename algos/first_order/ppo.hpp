@@ -17,6 +17,7 @@ SampleLoss clipped_loss(float ratio, float gain, float linear, float clip);
 class ClippedSurrogate final : public RatioLoss {
  public:
   float clip = 0.2f;
+  bool clips() const override { return true; }
 
  protected:
   SampleLoss sample(const Rollout& r, size_t at, float ratio) const override {

@@ -22,6 +22,7 @@ namespace rdm {
 class FocopsLoss final : public PolicyLoss {
  public:
   void add(const PolicyChunk& chunk) const override;
+  bool clips() const override { return true; }
   float temperature = 1.5f, eta = 0.02f;
 };
 

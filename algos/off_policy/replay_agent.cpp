@@ -198,12 +198,13 @@ void ReplayAgent::measure_part() {
 void ReplayAgent::report(Learned& learned) const {
   const auto steps = static_cast<double>(sums_.steps);
   learned.passes = static_cast<int32_t>(std::min<int64_t>(sums_.steps, INT32_MAX));
-  learned.last_kl = sums_.steps ? sums_.kl / valid_rows() : 0;
+  learned.last_kl = sums_.steps ? sums_.kl / valid_rows() : kNothing;
   learned.mean.kl = learned.last_kl;
+  learned.mean.clipped = kNothing;
   learned.mean.loss =
       sums_.actor_steps ? sums_.policy_loss / static_cast<double>(sums_.actor_steps) : kNothing;
   learned.mean.reward_loss = sums_.steps ? sums_.reward_loss / steps : kNothing;
-  learned.mean.cost_loss = resolved().num_limited == 0 ? 0 : sums_.steps ? sums_.cost_loss / steps : kNothing;
+  learned.mean.cost_loss = sums_.steps ? sums_.cost_loss / steps : kNothing;
 }
 
 double ReplayAgent::mean_value(bool of_cost) const {

@@ -26,6 +26,7 @@ class PenalizedSurrogate : public RatioLoss {
   float clip = 0.2f;
   bool clip_cost = true;
   float weight[kMaxCosts] = {};  // kappa where the penalty is on, else 0
+  bool clips() const override { return true; }
 
  protected:
   SampleLoss sample(const Rollout& r, size_t at, float ratio) const override;

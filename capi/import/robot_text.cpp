@@ -22,9 +22,8 @@ constexpr uint8_t kGrey[] = {178, 178, 184, 255};
 
 // ---- writing ----
 template <class T>
-std::string number_text(T x) {
-  if (std::isnan(x)) return std::signbit(x) ? "-nan" : "nan";
-  if (std::isinf(x)) return x < 0 ? "-inf" : "inf";
+std::string number_text(const char* key, T x) {
+  if (!std::isfinite(x)) refuse(RDM_ERROR_ARGUMENT, "def: %s: a number is not finite", key);
   char text[40];
   const auto end = to_chars(text, text + sizeof text, x).ptr;
   std::string out(text, end);
@@ -51,14 +50,14 @@ struct Writer {
   }
   void line(const char* key, const std::string& value) { out += std::string(key) + " = " + value + '\n'; }
   template <class T>
-  static std::string list(const T* x, int32_t count) {
+  void list(const char* key, const T* x, int32_t count) {
     std::string s = "[";
-    for (int32_t i = 0; i < count; ++i) s += (i ? ", " : "") + number_text(x[i]);
-    return s + ']';
+    for (int32_t i = 0; i < count; ++i) s += (i ? ", " : "") + number_text(key, x[i]);
+    line(key, s + ']');
   }
   // What differs from its default alone: files stay short, and nothing is lost.
   void number(const char* key, double x) {
-    if (x != 0 || std::signbit(x)) line(key, number_text(x));
+    if (x != 0 || std::signbit(x)) line(key, number_text(key, x));
   }
   void numbers(const char* key, const double* x, int32_t count, const double* otherwise = nullptr) {
     bool differs = false;
@@ -66,7 +65,7 @@ struct Writer {
       const double o = otherwise ? otherwise[i] : 0;
       differs = differs || x[i] != o || std::signbit(x[i]) != std::signbit(o);
     }
-    if (differs) line(key, list(x, count));
+    if (differs) list(key, x, count);
   }
   void turn(const char* key, const double* q) {
     static constexpr double kNone[4] = {0, 0, 0, 1};
@@ -138,8 +137,8 @@ struct Writer {
     if (d.summary) line("summary", quoted(d.summary));
     line("kind", quoted(kKinds[d.kind]));
     if (d.mirror >= 0 && d.mirror < 3) line("mirror", quoted(format("%c", "xyz"[d.mirror]).c_str()));
-    if (d.home) line("home", list(d.home, n));
-    if (d.folded) line("folded", list(d.folded, n));
+    if (d.home) list("home", d.home, n);
+    if (d.folded) list("folded", d.folded, n);
     if (d.num_commands < 0) {
       line("commands", quoted("none"));
     } else if (d.commands) {
@@ -147,7 +146,7 @@ struct Writer {
       for (int32_t i = 0; i < d.num_commands; ++i) s += (i ? ", " : "") + link(d.commands[i], "commands");
       line("commands", s + ']');
     }
-    if (d.closed) line("closed", list(d.closed, num_commands(d)));
+    if (d.closed) list("closed", d.closed, num_commands(d));
     if (d.num_pairs < 0) {
       line("pairs", quoted("all"));
     } else if (d.num_pairs > 0) {
@@ -189,8 +188,8 @@ struct Writer {
       out += "\n[[curve]]\n";
       line("link", link(c.link, "curves"));
       line("driver", link(c.driver, "curves"));
-      line("command", list(c.command, c.num_knots));
-      line("angle", list(c.angle, c.num_knots));
+      list("command", c.command, c.num_knots);
+      list("angle", c.angle, c.num_knots);
     }
     for (int32_t i = 0; i < d.num_fingers; ++i) {
       const rdm_robot_finger& f = d.fingers[i];
@@ -229,7 +228,7 @@ struct Writer {
     numbers("p", l.pose.p, 3);
     turn("q", l.pose.q);
     numbers("axis", l.axis, 3);
-    line("range", list(&l.lower, 2));
+    list("range", &l.lower, 2);
     static_assert(offsetof(rdm_robot_link, upper) == offsetof(rdm_robot_link, lower) + sizeof l.lower);
     number("velocity", l.velocity);
     number("kp", l.kp);
@@ -474,7 +473,13 @@ struct RobotReader {
 
 std::string write_robot(const rdm_robot_def& def) {
   Writer writer{def, {}};
-  return writer.write();
+  std::string text = writer.write();
+  try {
+    parse_toml(text);
+  } catch (const Refusal& r) {  // a name that is not UTF-8, or more than a file may have
+    refuse(RDM_ERROR_ARGUMENT, "def: the file could not be read back: %s", r.text.c_str());
+  }
+  return text;
 }
 
 void read_robot_table(const Table& file, const std::vector<const char*>& others, const Options& options,

@@ -147,7 +147,7 @@ typedef struct rdm_epoch {
   int64_t episodes;           /* finished so far */
   double ret;                 /* sum of rewards of an episode */
   double cost[RDM_MAX_COSTS]; /* sum of each cost column over an episode; cost_signal says of
-                               * what */
+                               * what; NaN from cost_dim on */
   double cost_per_step;       /* column 0, per control step; over this epoch's decisions while no
                                * episode has ended, and with option cost_limit_per_step */
   double length;              /* control steps of an episode */
@@ -164,10 +164,12 @@ typedef struct rdm_epoch {
   double action_std;          /* mean over dimensions */
   double loss_policy;         /* mean over minibatches */
   double loss_reward_value;   /* mean squared error */
-  double loss_cost_value;     /* mean squared error */
-  double clip_fraction;       /* share of samples whose ratio was clipped */
+  double loss_cost_value;     /* mean squared error; NaN without a critic of costs */
+  double clip_fraction;       /* share of samples whose ratio was clipped; focops: whose KL
+                               * divergence was above eta, which leaves them out; NaN: the
+                               * algorithm does neither */
   double value_reward;        /* mean prediction over the batch */
-  double value_cost;          /* mean prediction over the batch */
+  double value_cost;          /* mean prediction over the batch; NaN without a critic of costs */
   int32_t passes;             /* passes over the data; fewer after an early stop */
   int32_t reserved;           /* 0 */
   int32_t cost_signal;        /* what costs are sums of; 0: costs, 1: their magnitudes (option

@@ -109,7 +109,8 @@ RDM_API rdm_result rdm_import_note_at(const rdm_import *i, int32_t n,
  * within 2 s (weightless, own drives, no contacts). Fails as rdm_robot_create would. */
 RDM_API rdm_result rdm_import_check(rdm_import *i);
 /* The robot as a .robot file, text [capacity]; read back it is the same to the last bit. ARGUMENT
- * where a row refers to one that does not exist. */
+ * where a row refers to one that does not exist, for numbers that are not finite and for names that
+ * are not UTF-8. */
 RDM_API rdm_result rdm_import_write_robot(const rdm_robot_def *def, char *text, size_t capacity,
                                           size_t *size);
 /* Registers the task of a .task file: its scene, observation, rewards and costs as text (TOML, 1:1

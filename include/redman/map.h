@@ -70,9 +70,10 @@ RDM_API rdm_result rdm_map_clear(rdm_map *m);               /* all is unknown ag
 /* Adds one scan: rays from origin [3] to points [count][3]. Each voxel changes once: its
  * probability rises where a ray ends, else falls where rays pass. Points that are not finite are
  * left out, and those nearer to the origin than a voxel's side: a depth of 0 says that nothing was
- * seen. A map has 65536 voxels along each axis, with 0 in its middle: RANGE for an origin outside,
- * and points outside end no ray. A full map does not grow further: the call returns OK, *dropped
- * (may be NULL) says how many voxels were left out, and voxels that exist are still updated. */
+ * seen. A map has 65536 voxels along each axis, with 0 in its middle: RANGE for an origin outside;
+ * points outside are left out, and their rays. A full map does not grow further: the call returns
+ * OK, *dropped (may be NULL) says how many voxels were left out, and voxels that exist are still
+ * updated. */
 RDM_API rdm_result rdm_map_insert(rdm_map *m, const float origin[3], const float *points,
                                   size_t count, uint64_t *dropped);
 /* Adds one scan by a camera of the pool's task: depths of w x h rays of world env. Rays that end on

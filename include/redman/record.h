@@ -95,8 +95,8 @@ typedef struct rdm_recording_rows {
   const uint8_t *terminated;  /* [rows] NULL when appending: none */
   const uint8_t *truncated;   /* [rows] NULL when appending: none */
   const uint8_t *success;     /* [rows] NULL when appending: none */
-  const int64_t *episode;     /* [rows] number of its episode from 0; NULL when appending: each end
-                               * begins one */
+  const int64_t *episode;     /* [rows] number of its episode, counted from 0 in the order of first
+                               * rows; NULL when appending: each end begins one */
   int64_t num_states;         /* count */
   const int64_t *state_row;   /* [num_states] row before which the world had the state, ascending */
   const uint8_t *state;       /* [num_states][state_bytes] what rdm_pool_read_state takes */
@@ -109,7 +109,8 @@ typedef struct rdm_recording_rows {
 RDM_API rdm_result rdm_recording_get_rows(const rdm_recording *r, rdm_recording_rows *io);
 /* Adds rows of a host's own; their episodes are numbered after those that are there, and actions
  * and labels are clipped to [-1, 1]. ARGUMENT for numbers that are not finite, flags that are not 0
- * or 1, episodes or states out of order; nothing changes then. */
+ * or 1, states out of order, episodes whose numbers skip one or that go on after their end; nothing
+ * changes then. */
 RDM_API rdm_result rdm_recording_append(rdm_recording *r, const rdm_recording_rows *rows);
 /* Adds all rows of another recording with the same dims, layout_hash and state_bytes. */
 RDM_API rdm_result rdm_recording_append_all(rdm_recording *r, const rdm_recording *other);

@@ -125,6 +125,29 @@ uint64_t Recording::state_fingerprint() const {
   return hash_words(state_.data(), state_.size(), kHashSeed);
 }
 
+namespace {
+
+// Episodes are numbered by their first rows, so that no number stands for an episode without rows; rows of
+// several may alternate, but none comes after the end of its own.
+void check_episodes(const RecordingRows& in) {
+  Vector<uint8_t> over;  // [episodes so far]
+  for (int64_t i = 0; i < in.rows; ++i) {
+    const int64_t e = in.episode[i], next = static_cast<int64_t>(over.size());
+    if (e < 0 || e > next)
+      fail(Code::kArgument,
+           "episode: row %lld has %lld, but episodes are numbered by their first rows, and the next is %lld",
+           static_cast<long long>(i), static_cast<long long>(e), static_cast<long long>(next));
+    if (e == next) over.push_back(0);
+    uint8_t& ended = over[static_cast<size_t>(e)];
+    if (ended)
+      fail(Code::kArgument, "episode: row %lld has %lld, but that episode has ended in an earlier row",
+           static_cast<long long>(i), static_cast<long long>(e));
+    ended = (in.terminated && in.terminated[i]) || (in.truncated && in.truncated[i]);
+  }
+}
+
+}  // namespace
+
 void Recording::check(const RecordingRows& in) const {
   check_range("rows", in.rows, 0, kMaxRecordingRows);
   check_range("num_states", in.num_states, 0, in.rows);
@@ -147,10 +170,7 @@ void Recording::check(const RecordingRows& in) const {
   check_flags("terminated", in.terminated, n);
   check_flags("truncated", in.truncated, n);
   check_flags("success", in.success, n);
-  for (size_t i = 0; in.episode && i < n; ++i)
-    if (in.episode[i] < 0 || in.episode[i] >= in.rows)
-      fail(Code::kArgument, "episode: row %zu has %lld, which is outside [0, rows)", i,
-           static_cast<long long>(in.episode[i]));
+  if (in.episode) check_episodes(in);
   if (in.num_states == 0) return;
   if (spec_.state_bytes == 0) fail(Code::kArgument, "num_states: this recording has no states");
   if (!in.state_row || !in.state) fail(Code::kArgument, "state_row or state is NULL");

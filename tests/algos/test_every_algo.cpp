@@ -1,4 +1,5 @@
 // What every algorithm promises, for each of the list.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <tuple>
@@ -54,6 +55,27 @@ TEST_P(EveryAlgo, Learns) {
   else
     EXPECT_EQ(e.passes, 3);
   EXPECT_GT(e.loss_reward_value, 0);
+}
+
+// A number that was not measured is NaN, not 0.
+TEST_P(EveryAlgo, SaysWhatItDoesNotMeasure) {
+  static constexpr const char* kClip[] = {"ppo",    "ppo_lag", "p3o",     "ipo",   "cppo_pid",
+                                          "focops", "cup",     "rcpo",    "mappo", "mappo_lag",
+                                          "happo",  "ippo",    "ippo_lag"};
+  AgentSetup s = setup();
+  const AgentPtr a = s.make();
+  NoiseWorld world(s.config);
+  Epoch e;
+  for (int i = 0; i < 3; ++i) world.epoch(*a, &e);
+  const bool clips = std::any_of(std::begin(kClip), std::end(kClip),
+                                 [&](const char* name) { return std::strcmp(name, info().name) == 0; });
+  EXPECT_EQ(std::isfinite(e.clip_fraction), clips) << e.clip_fraction;
+  const Costs costs = algo_row(algo_find(info().name)).costs;
+  const bool judges =
+      costs == Costs::kAny || costs == Costs::kOne || (s.off_policy() && costs != Costs::kNone);
+  EXPECT_EQ(std::isfinite(e.loss_cost_value), judges) << e.loss_cost_value;
+  EXPECT_EQ(std::isfinite(e.value_cost), judges) << e.value_cost;
+  for (int32_t k = 0; k < kMaxCosts; ++k) EXPECT_EQ(std::isfinite(e.cost[k]), k < s.config.cost_dim) << k;
 }
 
 TEST_P(EveryAlgo, SameBytesForAnyThreads) {

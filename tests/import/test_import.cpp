@@ -633,6 +633,18 @@ TEST(Import, HandlesAndPointersAreChecked) {
   rdm_robot_def nameless = good.def;
   nameless.name = nullptr;
   EXPECT_EQ(rdm_import_write_robot(&nameless, nullptr, 0, &size), RDM_ERROR_ARGUMENT);
+  std::vector<rdm_robot_link> links(good.def.links, good.def.links + good.def.num_links);
+  rdm_robot_def altered = good.def;
+  altered.links = links.data();
+  EXPECT_EQ(rdm_import_write_robot(&altered, nullptr, 0, &size), RDM_OK);
+  for (const double x : {std::nan(""), HUGE_VAL}) {
+    links[0].kp = x;
+    EXPECT_EQ(rdm_import_write_robot(&altered, nullptr, 0, &size), RDM_ERROR_ARGUMENT);
+    EXPECT_STREQ(rdm_import_error(), "def: kp: a number is not finite");
+  }
+  altered = good.def;
+  altered.summary = "\xff";
+  EXPECT_EQ(rdm_import_write_robot(&altered, nullptr, 0, &size), RDM_ERROR_ARGUMENT);
   rdm_robot_def short_def = good.def;
   short_def.struct_size = 8;
   EXPECT_EQ(rdm_import_get_robot_def(good.handle, &short_def), RDM_ERROR_ARGUMENT);

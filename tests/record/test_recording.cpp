@@ -123,6 +123,9 @@ TEST(Recording, RefusesWhatIsNoRow) {
   EXPECT_EQ(code_of([](Rows& r) { r.success[1] = 2; }), Code::kArgument);
   EXPECT_EQ(code_of([](Rows& r) { r.episode[1] = -1; }), Code::kArgument);
   EXPECT_EQ(code_of([](Rows& r) { r.episode[1] = 6; }), Code::kArgument);
+  EXPECT_EQ(code_of([](Rows& r) { r.episode = {1, 0, 1, 0, 1, 0}; }), Code::kArgument);  // 1 before 0
+  EXPECT_EQ(code_of([](Rows& r) { r.episode = {0, 2, 0, 2, 0, 2}; }), Code::kArgument);  // there is no 1
+  EXPECT_EQ(code_of([](Rows& r) { r.truncated[2] = 1; }), Code::kArgument);  // it goes on after its end
   EXPECT_EQ(code_of([](Rows& r) { r.state_row[1] = 1; }), Code::kArgument);
   EXPECT_EQ(code_of([](Rows& r) { r.state_row[1] = 6; }), Code::kArgument);
 }

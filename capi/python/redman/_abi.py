@@ -1822,7 +1822,7 @@ class Epoch(Record):
     env_steps: control steps so far, all environments
     episodes: finished so far
     ret: sum of rewards of an episode
-    cost: sum of each cost column over an episode; cost_signal says of what
+    cost: sum of each cost column over an episode; cost_signal says of what; NaN from cost_dim on
     cost_per_step: column 0, per control step; over this epoch's decisions while no episode has ended, and with
         option cost_limit_per_step
     length: control steps of an episode
@@ -1837,10 +1837,11 @@ class Epoch(Record):
     action_std: mean over dimensions
     loss_policy: mean over minibatches
     loss_reward_value: mean squared error
-    loss_cost_value: mean squared error
-    clip_fraction: share of samples whose ratio was clipped
+    loss_cost_value: mean squared error; NaN without a critic of costs
+    clip_fraction: share of samples whose ratio was clipped; focops: whose KL divergence was above eta, which
+        leaves them out; NaN: the algorithm does neither
     value_reward: mean prediction over the batch
-    value_cost: mean prediction over the batch
+    value_cost: mean prediction over the batch; NaN without a critic of costs
     passes: passes over the data; fewer after an early stop
     cost_signal: what costs are sums of; 0: costs, 1: their magnitudes (option cost_signal=raw)
     flags: EpochFlag
@@ -1908,7 +1909,7 @@ class rdm_epoch(Structure):
     env_steps: control steps so far, all environments
     episodes: finished so far
     ret: sum of rewards of an episode
-    cost: sum of each cost column over an episode; cost_signal says of what
+    cost: sum of each cost column over an episode; cost_signal says of what; NaN from cost_dim on
     cost_per_step: column 0, per control step; over this epoch's decisions while no episode has ended, and with
         option cost_limit_per_step
     length: control steps of an episode
@@ -1923,10 +1924,11 @@ class rdm_epoch(Structure):
     action_std: mean over dimensions
     loss_policy: mean over minibatches
     loss_reward_value: mean squared error
-    loss_cost_value: mean squared error
-    clip_fraction: share of samples whose ratio was clipped
+    loss_cost_value: mean squared error; NaN without a critic of costs
+    clip_fraction: share of samples whose ratio was clipped; focops: whose KL divergence was above eta, which
+        leaves them out; NaN: the algorithm does neither
     value_reward: mean prediction over the batch
-    value_cost: mean prediction over the batch
+    value_cost: mean prediction over the batch; NaN without a critic of costs
     passes: passes over the data; fewer after an early stop
     reserved: 0
     cost_signal: what costs are sums of; 0: costs, 1: their magnitudes (option cost_signal=raw)
@@ -2961,7 +2963,8 @@ class rdm_recording_rows(Structure):
     terminated: [rows] NULL when appending: none
     truncated: [rows] NULL when appending: none
     success: [rows] NULL when appending: none
-    episode: [rows] number of its episode from 0; NULL when appending: each end begins one
+    episode: [rows] number of its episode, counted from 0 in the order of first rows; NULL when appending: each
+        end begins one
     num_states: count
     state_row: [num_states] row before which the world had the state, ascending
     state: [num_states][state_bytes] what rdm_pool_read_state takes
@@ -5370,9 +5373,10 @@ FUNCTIONS: dict[str, Function] = {
         """Adds one scan: rays from origin [3] to points [count][3]. Each voxel changes once: its
         probability rises where a ray ends, else falls where rays pass. Points that are not finite are
         left out, and those nearer to the origin than a voxel's side: a depth of 0 says that nothing was
-        seen. A map has 65536 voxels along each axis, with 0 in its middle: RANGE for an origin outside,
-        and points outside end no ray. A full map does not grow further: the call returns OK, *dropped
-        (may be NULL) says how many voxels were left out, and voxels that exist are still updated.
+        seen. A map has 65536 voxels along each axis, with 0 in its middle: RANGE for an origin outside;
+        points outside are left out, and their rays. A full map does not grow further: the call returns
+        OK, *dropped (may be NULL) says how many voxels were left out, and voxels that exist are still
+        updated.
         """),
     "rdm_map_scan": Function(
         c_int32, {"m": c_void_p, "p": c_void_p, "env": c_int32, "camera": c_char_p, "w": c_int32, "h": c_int32, "skip": c_void_p, "num_skip": c_size_t, "dropped": c_void_p},
@@ -5811,7 +5815,8 @@ FUNCTIONS: dict[str, Function] = {
         {}, True,
         """Adds rows of a host's own; their episodes are numbered after those that are there, and actions
         and labels are clipped to [-1, 1]. ARGUMENT for numbers that are not finite, flags that are not 0
-        or 1, episodes or states out of order; nothing changes then.
+        or 1, states out of order, episodes whose numbers skip one or that go on after their end; nothing
+        changes then.
         """),
     "rdm_recording_append_all": Function(
         c_int32, {"r": c_void_p, "other": c_void_p},

@@ -191,7 +191,8 @@ FUNCTIONS: dict[str, Function] = {
         c_int32, {"def": POINTER(rdm_robot_def), "text": c_void_p, "capacity": c_size_t, "size": c_void_p},
         {}, True,
         """The robot as a .robot file, text [capacity]; read back it is the same to the last bit. ARGUMENT
-        where a row refers to one that does not exist.
+        where a row refers to one that does not exist, for numbers that are not finite and for names that
+        are not UTF-8.
         """),
     "rdm_import_read_task_file": Function(
         c_int32, {"task": c_void_p, "path": c_char_p},
