@@ -12,6 +12,7 @@ import numpy as np
 from . import _abi
 from ._error import ArgumentError, UnsupportedError, VersionError
 from ._library import Handle, assign, bytes_of, check, lib, sized
+from ._names import Hinted
 from ._pool import Pool
 from ._rows import Array, address, clouds, given
 
@@ -47,7 +48,7 @@ def worlds_of(where: Any) -> tuple[Optional[Pool], Any]:
     return None, None
 
 
-class Actor:
+class Actor(Hinted):
     """Plays a policy in worlds that step faster than the policy decides. It holds each action until the next decision.
 
         pool = redman.Pool("hand_over_safe_finger", 16)      env = gymnasium.make("redman/HandOverSafeFinger-v0")
@@ -61,6 +62,10 @@ class Actor:
     have begun. So a policy behaves the same in all of them. For other worlds give num_envs=, action_repeat= and center=, and
     call reset(mask) where episodes begin.
     """
+
+    policy: Policy
+    stochastic: bool
+    num_envs: int
 
     def __init__(self, policy: Policy, where: Any = None, *, num_envs: Optional[int] = None, action_repeat: int = 1,
                  center: Any = None, stochastic: bool = False, seed: int = 0) -> None:
@@ -85,7 +90,7 @@ class Actor:
             if action_repeat < 1:
                 raise ArgumentError(f"action_repeat: {action_repeat} is less than 1")
         self._repeat = spec.action_repeat
-        self.num_envs: int = int(num_envs or 0)
+        self.num_envs = int(num_envs or 0)
         self._center = None if center is None else np.asarray(center, np.float64)
         if self._center is not None and self._center.shape != (policy.info.action_dim,):
             raise ArgumentError(f"center: its shape is {self._center.shape}, but must be ({policy.info.action_dim},)")

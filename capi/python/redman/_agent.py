@@ -76,6 +76,8 @@ class Epoch(_abi.Epoch, Dict[str, Any]):  # type: ignore[misc]  # a record has a
 class _AgentTensors(Tensors, MutableMapping[str, FloatArray]):
     """The parameters of an agent: reading copies out, assignment copies in."""
 
+    __slots__ = ()
+
     def __setitem__(self, name: str, values: Any) -> None:
         self[name]  # an unknown name is told first
         array = np.ascontiguousarray(values, np.float32)
@@ -118,6 +120,13 @@ class Agent(Taught, Hinted):
         "evaluate": "redman.evaluate(agent.policy(), task)", "parameters": "agent.tensors",
         "state_dict": "agent.tensors has the parameters by name, agent.save() all of its state",
         "load_state_dict": "agent.tensors[name] = array, or agent.load(state)"}
+    _set_option = "agent.set({}=...)"
+
+    algo: _discovery.Algo
+    obs_dim: int
+    action_dim: int
+    cost_dim: int
+    num_envs: int
 
     @keywords(aliases={"cost_limit": "cost_limits", "num_threads": "threads"}, options=True)
     def __init__(self, pool: Optional[Pool] = None, algo: str = "ppo_lag", seed: int = 0, threads: int = 0,
@@ -170,10 +179,8 @@ class Agent(Taught, Hinted):
         self._a = self._handle.value
         self._shield: Optional[Shield] = None
         self._recording: Optional[Recording] = None
-        self.algo: _discovery.Algo = _discovery.algo(config["algo"])
-        self.obs_dim, self.action_dim = int(config["obs_dim"]), int(config["action_dim"])
-        self.cost_dim, self.num_envs = int(config["cost_dim"]), int(config["num_envs"])
         self._lengths = {name: int(config[name]) for name in ("obs_dim", "action_dim", "cost_dim", "num_envs")}
+        vars(self).update(self._lengths, algo=_discovery.algo(config["algo"]))
 
     # ---- learning ---------------------------------------------------------------------------------------------
 
@@ -405,10 +412,14 @@ class Agent(Taught, Hinted):
     # ---- what it is -------------------------------------------------------------------------------------------
 
     @property
-    def options(self) -> dict[str, Value]:
-        """All options of the algorithm as this agent has them."""
+    def options(self) -> Mapping[str, Value]:
+        """All options of the algorithm as this agent has them, to be read: changing an entry is an error, and
+        dict(agent.options) is a copy. agent.set(learning_rate=1e-4) changes a live option."""
         return read_settings(lib.rdm_agent_get_settings, self._open(),
-                             {key: option.kind for key, option in self.algo.options.items()})
+                             {key: option.kind for key, option in self.algo.options.items()}, "agent.set(key=value)")
+
+    def _option_names(self) -> Iterable[str]:
+        return self.algo.options if "algo" in vars(self) else ()
 
     def set(self, **options: Given) -> None:
         """Changes live options: agent.set(learning_rate=1e-4). Keys with dots: agent.set(**{"a.b": 1})."""

@@ -46,6 +46,10 @@ class Comparison(Hinted):
 
     _hints = {"plot": "curves", "table": "rows; print(comparison) writes the table", "show": "it draws itself in a notebook"}
 
+    runs: dict[str, list[Run]]
+    evaluations: dict[str, list[Evaluation]]
+    rows: list[ComparisonRow]
+
     def __init__(self, runs: Mapping[str, Sequence[Run]], evaluations: Mapping[str, Sequence[Evaluation]]) -> None:
         self.runs = {name: list(these) for name, these in runs.items()}
         self.evaluations = {name: list(these) for name, these in evaluations.items()}

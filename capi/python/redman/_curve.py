@@ -55,14 +55,18 @@ class Curve(_Drawn, Hinted, Dict[str, Column]):
     _hints = {"show": _DRAWS, "draw": _DRAWS, "df": "to_pandas()", "to_df": "to_pandas()",
               "columns": "list(curve) has the names of the columns", "epochs": "curve['Train/Epoch']"}
 
+    label: str = ""
+    limit: Optional[float] = None  # of the first cost
+    folder: str  # where it was read, "" for none
+    kind: str  # task and algorithm
+    seed: Optional[int]
+    settings: dict[str, str]  # all others: curves of one kind and settings with different seeds share a line
+
     def __init__(self, columns: Mapping[str, Any] = {}, label: str = "", limit: Optional[float] = None,
                  folder: str = "", kind: str = "", seed: Optional[int] = None, settings: Mapping[str, str] = {}) -> None:
         super().__init__((name, np.asarray(values, np.float64)) for name, values in columns.items())
-        self.label = label
-        self.limit = limit  # of the first cost
-        self.folder = folder  # where it was read, "" for none
-        self.kind, self.seed = kind, seed  # task and algorithm
-        self.settings = dict(settings)  # all others: curves of one kind and settings with different seeds share a line
+        self.label, self.limit, self.folder = label, limit, folder
+        self.kind, self.seed, self.settings = kind, seed, dict(settings)
 
     @property
     def steps(self) -> Column:
@@ -95,6 +99,7 @@ class Curves(_Drawn, Hinted, Sequence[Curve]):
     deviation on each side, as `redman plot` does; each=True draws a line for each run."""
 
     _hints = {"show": _DRAWS, "draw": _DRAWS}
+    each: bool = False  # whether every run has a line of its own
 
     def __init__(self, curves: Iterable[Curve], each: bool = False) -> None:
         self._curves, self.each = list(curves), each

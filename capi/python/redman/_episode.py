@@ -50,13 +50,16 @@ class Episode(Hinted):
     _hints = {"save": 'render("throw.html")', "show": "an episode draws itself in a notebook; render(\"throw.html\") writes a page",
               "play": "an episode draws itself in a notebook"}
 
+    task: str
+    cameras: list[str]
+
     def __init__(self, pool: Pool, env: int = 0, *, actor: str = "python", limits: Optional[Mapping[str, Optional[float]]] = None,
                  own: Optional[Own] = None, shield: str = "", seed: Optional[int] = None) -> None:
         self._feed = Feed(pool, env, 1, actor=actor, limits=limits, own=own, shield=shield, seed=seed)
         self._env, self._config = env, dict(pool._config)
         self._seconds = float(pool.control_dt) * pool.spec.action_repeat
         self._moments = pool.max_steps
-        self.task: str = pool.task.name
+        self.task = pool.task.name
         self.cameras = list(pool.task.cameras)
         self.clear()
 

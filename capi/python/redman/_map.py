@@ -14,7 +14,7 @@ from . import _abi
 from ._abi import MapFormat
 from ._error import ArgumentError, StateError, UsageError
 from ._library import Handle, assign, bytes_of, check, encoded, failure, filled, int32, lib, sized
-from ._names import nearest
+from ._names import Hinted, nearest
 from ._pool import Pool
 from ._rows import Array, FloatArray, address, given
 
@@ -31,7 +31,7 @@ def _points(points: Any, name: str = "points") -> Array:
     return rows
 
 
-class Map:
+class Map(Hinted):
     """An occupancy map made from scans: point clouds of your own, or scans by a pool's cameras.
 
         m = redman.Map(resolution=0.02)
@@ -42,6 +42,8 @@ class Map:
     Points are in m. More keywords: memory (bytes, 64 MiB), max_range (m, 4; 0: no limit), hit, miss, low, high, threshold.
     dropped: voxels left out so far because the map was full.
     """
+
+    dropped: int = 0
 
     def __init__(self, resolution: float = 0.02, **config: float) -> None:
         self._lock = threading.RLock()
@@ -58,7 +60,7 @@ class Map:
                 setattr(struct, name, float(value))
         self._handle: Optional[Handle] = Handle(lib.rdm_map_create, lib.rdm_map_destroy, byref(struct))
         self._m = self._handle.value
-        self._memory, self._max_range, self.dropped = int(struct.memory), float(struct.max_range), 0
+        self._memory, self._max_range = int(struct.memory), float(struct.max_range)
 
     def insert(self, origin: Sequence[float], points: Any) -> int:
         """Adds one scan: rays from origin to points. Returns how many voxels a full map left out, and warns if there were

@@ -102,20 +102,49 @@ def _option(key: str) -> str:
 
 
 class Hinted:
-    """An object whose error for an unknown attribute says what to write instead."""
+    """An object whose error for an unknown attribute, read or set, says what to write instead.
+
+    A class annotates its public attributes. Each is set once, and one with a default in the class at any time. Subclasses
+    that users write may have attributes of their own.
+    """
 
     _hints: ClassVar[Mapping[str, str]] = {}
+    _set_option: ClassVar[str] = ""  # what is written to set an option, {}: option=value
 
-    if not TYPE_CHECKING:  # a type checker would take it for all attributes
+    _attributes: ClassVar[frozenset[str]] = frozenset()  # the public ones: members, and what is annotated
+
+    def __init_subclass__(cls, **more: Any) -> None:
+        super().__init_subclass__(**more)
+        names = {*dir(cls), *(name for base in cls.__mro__ for name in getattr(base, "__annotations__", ()))}
+        cls._attributes = frozenset(name for name in names if name[0] != "_")
+
+    def _option_names(self) -> Iterable[str]:
+        return ()
+
+    if not TYPE_CHECKING:  # a type checker would take them for all attributes
 
         def __getattr__(self, name: str) -> Any:
             if name.startswith("_"):
                 raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+            raise self._no_attribute(name)
+
+        def __setattr__(self, name: str, value: Any) -> None:
             kind = type(self)
-            said = kind._hints.get(name)
-            if said is None:
-                said = "there is no such attribute" + nearest(name, (own for own in dir(kind) if own[0] != "_"))
-            raise AttributeError(f"{kind.__name__}.{name}: {said}")
+            if name[0] != "_" and not hasattr(kind, name) and kind.__module__.split(".")[0] == __package__:
+                if name in vars(self):
+                    raise AttributeError(f"{kind.__name__}.{name}: it cannot be changed")
+                if name not in kind._attributes:
+                    raise self._no_attribute(name)
+            super().__setattr__(name, value)
+
+    def _no_attribute(self, name: str) -> AttributeError:
+        kind, options = type(self), frozenset(self._option_names())
+        said = kind._hints.get(name)
+        if said is None and (meant(name, options) or name) in options:
+            said = "it is an option: " + kind._set_option.format(meant(name, options) or name)
+        elif said is None:
+            said = "there is no such attribute" + nearest(name, kind._attributes | options)
+        return AttributeError(f"{kind.__name__}.{name}: {said}")
 
 
 # Of the module: what to write instead.

@@ -4,7 +4,7 @@ from __future__ import annotations
 import ctypes
 import os
 from ctypes import byref, c_size_t
-from typing import Any, Callable, Iterable, Mapping, Optional, Sequence, Union
+from typing import Any, Callable, Dict, Iterable, Mapping, Optional, Sequence, Union
 
 import numpy as np
 
@@ -21,6 +21,24 @@ Value = Union[str, float, int, bool]
 Given = Union[Value, Sequence[float], Sequence[str], "os.PathLike[str]", Record]
 Options = Mapping[str, Given]
 _COMMAS = ("actor_obs", "critic_obs")  # options whose value is a list of names with commas; of others it has +
+
+
+class Told(Dict[str, Value]):
+    """Options that something has, as a dict that cannot be changed; copies of it can."""
+
+    def __init__(self, options: Mapping[str, Value], instead: str) -> None:
+        super().__init__(options)
+        self._instead = instead  # what is written to change them
+
+    def _refuse(self, *_: Any, **__: Any) -> Any:
+        raise UsageError(f"options: this dict tells what they are and cannot be changed: {self._instead}")
+
+    __setitem__ = __delitem__ = __ior__ = clear = pop = popitem = setdefault = update = _refuse  # type: ignore[assignment]
+
+    def __reduce__(self) -> Any:  # of copies and pickles
+        return dict, (dict(self),)
+
+
 Kinds = Mapping[str, int]  # OptionKind of each key; noise.right.tip_force is one of noise.FIELD
 
 
@@ -80,9 +98,9 @@ def settings_texts(call: Callable[..., int], handle: Any) -> dict[str, str]:
     return dict(line.split("=", 1) for line in text(raw.value).split("\n") if line)
 
 
-def read_settings(call: Callable[..., int], handle: Any, kinds: Mapping[str, int]) -> dict[str, Value]:
-    """The same as values."""
-    return {key: value_of(kind_of(key, kinds), value) for key, value in settings_texts(call, handle).items()}
+def read_settings(call: Callable[..., int], handle: Any, kinds: Mapping[str, int], instead: str) -> Told:
+    """The same as values. instead: what is written to change them."""
+    return Told({key: value_of(kind_of(key, kinds), value) for key, value in settings_texts(call, handle).items()}, instead)
 
 
 def kind_of(key: str, kinds: Kinds) -> Optional[int]:

@@ -9,7 +9,7 @@ import numpy as np
 from ._abi import Status
 from ._error import ArgumentError, NotFoundError, UsageError
 from ._imported import path_of, thing_at
-from ._names import nearest
+from ._names import Hinted, nearest
 from ._pool import Pool
 from ._rows import Array, FloatArray
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 _LOST = int(Status.DIVERGED) | int(Status.BAD_ACTION) | int(Status.TASK)
 
 
-class Rows:
+class Rows(Hinted):
     """What the worlds of a pool show after a control step, one row for each world. Rewards and costs of your own are functions of
     it.
 
@@ -28,6 +28,8 @@ class Rows:
     obs is what learners see, with the noise that options give it. rows.pool has the rest, such as poses and contacts; in training
     it shows the next episode already in a world whose episode has just ended.
     """
+
+    pool: Pool
 
     def __init__(self, pool: Pool) -> None:
         self.pool = pool

@@ -5,7 +5,7 @@ import contextlib
 import ctypes
 import threading
 from ctypes import byref
-from typing import Any, Callable, Mapping, Optional, Sequence
+from typing import Any, Callable, Iterable, Mapping, Optional, Sequence
 
 import numpy as np
 
@@ -67,6 +67,12 @@ class Planner(Hinted):
         "predict": "planner.act(env)", "step": "pool.step(planner.act())", "settings": "planner.options has all of them",
         "save": "state()", "load": "set_state(state)", "close": "a planner ends with its last reference",
         "ret": "planner.info.ret", "cost": "planner.info.cost"}
+    _set_option = "Planner(pool, {}=...)"
+
+    pool: Pool
+    spec: _abi.PlannerSpec
+    samples: int  # of a decision
+    horizon: int  # rows of the plan
 
     @keywords(aliases={"num_threads": "threads", "cost_limit": "cost_limits", "critic": "agent"}, options=True)
     def __init__(self, pool: Pool, *, policy: Optional[Backup] = None, agent: Optional[Agent] = None, seed: int = 0,
@@ -150,10 +156,14 @@ class Planner(Hinted):
             check(lib.rdm_planner_set_plan(self._handle.value, rows.ctypes.data))
 
     @property
-    def options(self) -> dict[str, Value]:
-        """All options as this planner has them."""
+    def options(self) -> Mapping[str, Value]:
+        """All options as this planner has them, to be read: changing an entry is an error, and dict(planner.options) is a copy.
+        Planner(pool, options={...}) makes a planner with others."""
         return read_settings(lib.rdm_planner_get_settings, self._handle.value,
-                             {key: option.kind for key, option in _discovery.planner_options().items()})
+                             {key: option.kind for key, option in _discovery.planner_options().items()}, "Planner(pool, options={...})")
+
+    def _option_names(self) -> Iterable[str]:
+        return _discovery.planner_options()
 
     def reset(self) -> None:
         """Forgets the plan, as for a new episode; the stream of noise continues."""

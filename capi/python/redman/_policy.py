@@ -101,6 +101,9 @@ class Policy(Hinted):
         "state_dict": "policy.tensors", "task": "policy.info.task", "obs_dim": "policy.info.obs_dim",
         "action_dim": "policy.info.action_dim", "to_bytes": "bytes(policy)"}
 
+    origin: Optional[Origin] = None
+    info: _abi.PolicyInfo
+
     def __init__(self, data: bytes, origin: Optional[Origin] = None) -> None:
         self._bytes = bytes(data)
         if self._bytes[:len(_MAGIC)] != _MAGIC:

@@ -7,7 +7,7 @@ import operator
 import threading
 from ctypes import byref, c_size_t, c_uint64
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ContextManager, Iterator, Mapping, Optional, Sequence, Union
+from typing import TYPE_CHECKING, Any, ContextManager, Iterable, Iterator, Mapping, Optional, Sequence, Union
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from ._html import image, number, table
 from ._hold import LAST, Watch
 from ._library import (Handle, assign, check, encoded, failure, filled, int32, lib, raise_kept, raised, sized, text)
 from ._names import Hinted, keywords, nearest
-from ._options import Options, Value, read_settings, settings_of
+from ._options import Options, Told, Value, read_settings, settings_of
 from ._paths import by_name, named_options
 from ._returned import Returned
 from ._rows import Array, Borrowed, DoubleArray, FloatArray, address, given, made, shape_of
@@ -107,7 +107,7 @@ class Guard(_abi.Guard):
                              normal=tuple(map(float, normal)))
 
 
-class Sensors:
+class Sensors(Hinted):
     """Pictures, clouds and voxels of the worlds (option modality): arrays in the library's memory, None where a modality is off."""
 
     rgb: Optional[npt.NDArray[np.uint8]]
@@ -167,6 +167,16 @@ class Pool(Hinted):
         "info": "cost, success, status are rows of the pool", "observations": "obs", "actions": "action",
         "get_state": "state(env)", "dt": "control_dt"}
     _lost: Optional[str] = None  # why a copy has no worlds
+    _set_option = "Pool(task, {}=...)"
+
+    spec: _abi.Spec
+    task: _discovery.TaskInfo
+    num_envs: int
+    obs_dim: int
+    action_dim: int
+    cost_dim: int
+    max_steps: int  # control steps of an episode
+    control_dt: float  # s
 
     @keywords(aliases={"envs": "num_envs", "num_threads": "threads"}, options=True)
     def __init__(self, task: _discovery.TaskName, num_envs: int = 1, seed: int = 0, threads: int = 0, autoreset: object = "same_step",
@@ -181,7 +191,7 @@ class Pool(Hinted):
         self._p = self._handle.value
         self._spec = filled(_abi.rdm_spec, lib.rdm_pool_get_spec, self._p)
         self.spec = _abi.Spec(self._spec)
-        self.task: _discovery.TaskInfo = _discovery.task_at(self.spec.task)
+        self.task = _discovery.task_at(self.spec.task)
         self.num_envs = config.num_envs
         self.obs_dim, self.action_dim, self.cost_dim = self.spec.obs_dim, self.spec.action_dim, self.spec.cost_dim
         self.max_steps, self.control_dt = self.spec.max_steps, self.spec.control_dt
@@ -693,14 +703,18 @@ class Pool(Hinted):
         return int(self._config["seed"])
 
     @property
-    def options(self) -> dict[str, Value]:
-        """All options of the task as this pool has them."""
-        return dict(self._options)
+    def options(self) -> Mapping[str, Value]:
+        """All options of the task as this pool has them, to be read: changing an entry is an error, and dict(pool.options) is a
+        copy. Pool(task, options={...}) makes worlds with others."""
+        return self._options
 
     @cached_property
-    def _options(self) -> dict[str, Value]:
+    def _options(self) -> Told:
         return read_settings(lib.rdm_pool_get_settings, self._open(),
-                             {key: option.kind for key, option in self.task.options.items()})
+                             {key: option.kind for key, option in self.task.options.items()}, "Pool(task, options={...})")
+
+    def _option_names(self) -> Iterable[str]:
+        return self.task.options if "task" in vars(self) else ()
 
     @property
     def autoreset(self) -> str:

@@ -8,12 +8,13 @@ from . import _abi
 from ._callbacks import c_function
 from ._error import ArgumentError, UsageError
 from ._library import assign, sized
+from ._names import Hinted
 
 Gather = Callable[[bytes], Sequence[bytes]]
 Swap = Callable[[int, bytes], bytes]
 
 
-class Ranks:
+class Ranks(Hinted):
     """Which of several processes this one is, and how they exchange messages. Together they are one learner, which learns
     the same bytes as one process with all worlds and the same option blocks.
 
@@ -29,6 +30,9 @@ class Ranks:
     exception in either ends the call with CancelledError. All ranks must make the same calls of rollout, act, record, update
     and save.
     """
+
+    rank: int
+    ranks: int
 
     def __init__(self, rank: int, ranks: int, gather: Optional[Gather] = None, swap: Optional[Swap] = None) -> None:
         if not 0 <= rank < ranks:

@@ -53,6 +53,11 @@ class Recording(Hinted):
         "extend": "append(recording)", "close": "a recording ends with its last reference",
         "to_pandas": "pandas.DataFrame({'reward': recording.reward, 'episode': recording.episode})"}
 
+    obs_dim: int
+    action_dim: int
+    cost_dim: int
+    task: str  # "": worlds of your own
+
     @keywords(aliases={"stride": "state_stride"})
     def __init__(self, pool: Optional[Pool] = None, *, obs_dim: Optional[int] = None, action_dim: Optional[int] = None,
                  cost_dim: int = 0, task: str = "", layout_hash: int = 0, state_bytes: int = 0, num_points: int = 0,

@@ -12,7 +12,7 @@ from ._episode import Episode
 from ._error import Error, UsageError
 from ._html import number
 from ._names import Hinted
-from ._options import Value
+from ._options import Told, Value
 from ._own_costs import Own
 from ._play import Evaluation, evaluate
 from ._policy import Backup, Policy
@@ -33,16 +33,23 @@ class Run(Hinted):
         "model": "run.policy, or run.agent", "history": "run.curve",
         "returns": "run.curve.returns", "costs": "run.curve.costs"}
 
+    task: str
+    algo: str
+    seed: int
+    options: Mapping[str, Value]
+    cost_limits: dict[str, Optional[float]]  # of all costs by name, None where there is none
+    folder: Optional[Path]
+    env_steps: int = 0
+    seconds: float = 0.0
+    interrupted: bool = False  # it has fewer steps than it was to have
+
     def __init__(self, task: str, algo: str, seed: int, options: Mapping[str, Value], cost_limits: Mapping[str, Optional[float]],
                  policy: Policy, agent: Callable[[], Agent], folder: Optional[Path] = None, own: Optional[Own] = None,
                  settings: Mapping[str, str] = {}) -> None:
-        self.task, self.algo, self.seed, self.options = task, algo, seed, dict(options)
-        self.cost_limits = dict(cost_limits)  # of all costs by name, None where there is none
-        self.folder, self.policy = folder, policy
-        self.env_steps = 0
-        self.seconds = 0.0
+        self.task, self.algo, self.seed = task, algo, seed
+        self.options, self.cost_limits = Told(options, "redman.train(task, options={...})"), dict(cost_limits)
+        self.folder, self._policy = folder, policy
         self._judged: Optional[tuple[Policy, Evaluation]] = None
-        self.interrupted = False  # it has fewer steps than it was to have
         self._own, self._settings = own, settings  # the latter of its curve
         self._agent: Union[Agent, Callable[[], Agent]] = agent
         self._rows: dict[str, list[float]] = {}
@@ -74,9 +81,11 @@ class Run(Hinted):
         return [dict(zip(self._rows, row)) for row in zip(*self._rows.values())]
 
     @property
-    def best(self) -> Policy:
+    def policy(self) -> Policy:
         """The policy that was kept: the best within the limits, else the one nearest to them."""
-        return self.policy
+        return self._policy
+
+    best = policy
 
     @property
     def config(self) -> dict[str, Any]:

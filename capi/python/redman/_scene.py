@@ -10,6 +10,8 @@ from ._abi import ScenePart
 from ._definition import fill, pose_of
 from ._error import ArgumentError
 from ._library import check, encoded, lib, sized, text
+from ._names import Hinted
+from ._options import Told
 
 if TYPE_CHECKING:
     from ._robot import RobotName
@@ -17,7 +19,7 @@ if TYPE_CHECKING:
 _PARTS = {part.name.lower(): int(part) for part in ScenePart}
 
 
-class SceneBuilder:
+class SceneBuilder(Hinted):
     """Task.scene adds robots, bodies and shapes to it; each call returns the number that identifies the part in Worlds.
 
         def scene(self, s):
@@ -31,9 +33,11 @@ class SceneBuilder:
     be added before the first find, touch or joint.
     """
 
+    options: Mapping[str, Any]  # values of the task's own options in this pool; (low, high) where one is a range
+
     def __init__(self, handle: int, options: Mapping[str, Any]) -> None:
         self._handle: Optional[int] = handle
-        self.options = dict(options)  # values of the task's own options in this pool; (low, high) where one is a range
+        self.options = Told(options, "Pool(task, options={...})")
 
     def option(self, key: str) -> Any:
         """The value of an option in this pool: a number, a text, or (low, high) of a range."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 import threading
 from ctypes import byref, c_size_t
-from typing import TYPE_CHECKING, Any, Mapping, Optional, Union
+from typing import TYPE_CHECKING, Any, Iterable, Mapping, Optional, Union
 
 import numpy as np
 
@@ -78,6 +78,10 @@ class Shield(Hinted):
         "settings": "shield.options has all of them", "step": "pool.step(shield.act(action))", "save": "state()",
         "load": "set_state(state)", "policies": "shield.backups", "kind": "shield.kinds has that of each world, "
         "shield.row(env).kind one world's", "rows": "shield.row(env)", "close": "a shield ends with its last reference"}
+    _set_option = "Shield(pool, {}=...)"
+
+    pool: Pool
+    steps: int  # of the pool that a decision lasts
 
     @keywords(aliases={"num_threads": "threads", "cost_limits": "budgets", "cost_limit": "budgets", "budget": "budgets"},
               options=True)
@@ -103,7 +107,7 @@ class Shield(Hinted):
         with on_task(pool):
             self._handle = Handle(lib.rdm_shield_create, lib.rdm_shield_destroy, byref(config))
         held = 1 if policy is None else policy.info.action_repeat // pool.spec.action_repeat
-        self.steps: int = own["steps"] or held  # of the pool that a decision lasts
+        self.steps = own["steps"] or held
         self._config: dict[str, Any] = {**own, "steps": self.steps}
         self._policies = [] if policy is None else [policy]
         self._guards: list[tuple[Array, float]] = []
@@ -212,10 +216,14 @@ class Shield(Hinted):
         return counts.changed + counts.planned + counts.projected + counts.unproven
 
     @property
-    def options(self) -> dict[str, Value]:
-        """All options as this shield has them."""
+    def options(self) -> Mapping[str, Value]:
+        """All options as this shield has them, to be read: changing an entry is an error, and dict(shield.options) is a copy.
+        Shield(pool, options={...}) makes a shield with others."""
         return read_settings(lib.rdm_shield_get_settings, self._handle.value,
-                             {key: option.kind for key, option in _discovery.shield_options().items()})
+                             {key: option.kind for key, option in _discovery.shield_options().items()}, "Shield(pool, options={...})")
+
+    def _option_names(self) -> Iterable[str]:
+        return _discovery.shield_options()
 
     @property
     def budgets(self) -> list[Optional[float]]:

@@ -14,6 +14,8 @@ from ._rows import FloatArray
 class Tensors(Mapping[str, FloatArray]):
     """The parameters of an agent or a policy. Reading copies; vectors are [n], weights [outputs][inputs]."""
 
+    __slots__ = ("_owner", "_at", "_read")
+
     def __init__(self, owner: Any, at: Callable[..., int], read: Callable[..., int]) -> None:
         self._owner, self._at, self._read = owner, at, read
 

@@ -261,6 +261,10 @@ def _ends_after_epoch() -> Iterator[list[int]]:
 class Trainer(Training):
     """The worlds and the learner of a run, and the worlds that its policies are evaluated in."""
 
+    settings: Settings
+    cost_names: list[str]
+    limits: list[Optional[float]]
+
     def __init__(self, settings: Settings, ranks: Optional[Ranks] = None) -> None:
         self.settings, self._ranks = settings, ranks
         self.steps = settings.steps
@@ -378,7 +382,7 @@ class Trainer(Training):
     def begin(self, run: Run, folder: Optional[RunFolder], goes_on: bool = False) -> None:
         """Starts the run in its folder, after prepare()."""
         self.run, self._folder = run, folder
-        run.policy = self._own(self.agent.policy())
+        run._policy = self._own(self.agent.policy())
         if folder is not None:
             names = progress_row(Epoch(_abi.rdm_epoch()), self.cost_names, self.limits, 0, Tested(), Times(1, 0, 0))
             folder.begin(self.config(), names, bytes(run.policy), events=self.settings.events, goes_on=goes_on)
@@ -395,7 +399,7 @@ class Trainer(Training):
         self._plan_schedule()
         note = self._note
         run.env_steps, run.seconds = note.env_steps, note.seconds
-        run.policy = self._own(Policy(note.best_policy) if note.best is not None else self.agent.policy())
+        run._policy = self._own(Policy(note.best_policy) if note.best is not None else self.agent.policy())
         if folder is not None:
             folder.go_on(note.progress_bytes, events=self.settings.events)
             run._read_progress(folder.path)
@@ -558,7 +562,7 @@ class Trainer(Training):
         score = _score(confirmed, self._counted)
         if confirmed.lost or (note.best is not None and not _better(score, note.best)):
             return False, tested
-        note.best, note.best_policy, self.run.policy = score, bytes(policy), policy
+        note.best, note.best_policy, self.run._policy = score, bytes(policy), policy
         return True, tested
 
     def _save(self) -> None:
@@ -581,13 +585,13 @@ class Trainer(Training):
         it was stopped."""
         note = self._note
         if not self.first:
-            self.run.policy = self._own(self.agent.policy())
+            self.run._policy = self._own(self.agent.policy())
         if note.epoch == 0 or not self.first:
             return
         if self._scored_epoch != note.epoch:
             self._compete(self._own(self.agent.policy()))
         if note.best is None:
-            self.run.policy = self._own(self.agent.policy())
+            self.run._policy = self._own(self.agent.policy())
         if self._folder is not None:
             self._folder.write("policy.rdm", bytes(self.run.policy))
 

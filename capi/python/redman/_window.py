@@ -61,6 +61,8 @@ class Window(Hinted):
 
     _hints = {"url": "address", "show": "address, which a browser opens; update() sends the worlds as they are now"}
 
+    address: str
+
     def __init__(self, arguments: Sequence[str], *, fed: bool, page: Page, keep: Any = None) -> None:
         tool = tool_path()
         if tool is None:

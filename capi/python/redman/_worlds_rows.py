@@ -34,6 +34,8 @@ class Worlds:
     that SceneBuilder returned. In observe nothing can be set.
     """
 
+    __slots__ = ("n", "step", "_worlds", "_randoms", "_stride", "_results", "_seen", "_states", "_array", "_count")
+
     def __init__(self, rows: Any, state: Any, array: Callable[..., Any]) -> None:
         self.n: int = rows.count
         self.step: Any = None  # [n] in judge: control steps of the episode, from 1

@@ -29,6 +29,7 @@ from typing import TYPE_CHECKING, Any, Callable, Iterable, Mapping, Optional, Se
 
 from . import _events
 from ._error import ArgumentError, UsageError
+from ._names import Hinted
 from ._optional import optional
 
 if TYPE_CHECKING:
@@ -38,17 +39,22 @@ if TYPE_CHECKING:
     from ._run import Run
 
 
-class Training:
+class Training(Hinted):
     """A run in progress, as callbacks get it: its agent, its pool and the run itself.
 
     run.curve has the rows so far, and agent.policy() is the policy as it is now. set() changes options; stop() ends the run after
     this epoch.
     """
 
+    _set_option = "training.set({}=...)"
+
     agent: Agent
     run: Run
     steps: int  # control steps that the run is to have
     row: Mapping[str, float] = {}  # of progress.csv, of the last epoch
+
+    def _option_names(self) -> Iterable[str]:
+        return (*self.agent._option_names(), *self.pool._option_names()) if "agent" in vars(self) else ()
 
     @property
     def pool(self) -> Pool:
