@@ -102,7 +102,7 @@ class Rows(unittest.TestCase):
                 (lambda: recording.append(obs=np.zeros((2, 7))), "obs and action"),
                 (lambda: recording.append(obs=np.zeros((2, 6)), action=np.zeros((2, 2))), r"is \(2, 6\), but it must be \(2, 7\)"),
                 (lambda: recording.append(obs=np.full((2, 7), np.nan), action=np.zeros((2, 2))), "finite"),
-                (lambda: recording.append(np.zeros(3)), "append: give a redman.Recording"),
+                (lambda: recording.append(np.zeros(3)), "other: it must be a redman.Recording"),
                 (lambda: recording.filter(max_cost=[1, 2]), "it has 2 limits, but there are 3 costs"),
                 (lambda: recording.observations, "Recording.observations: obs")):
             with self.assertRaisesRegex((redman.Error, AttributeError), words):

@@ -326,7 +326,7 @@ class Agents(unittest.TestCase):
 
     def test_what_does_not_fit_is_refused(self):
         agent, pool = self.learner()
-        with self.assertRaisesRegex(redman.UsageError, "shield: it must be a redman.Shield or None"):
+        with self.assertRaisesRegex(redman.UsageError, "shield: it must be a redman.Shield, not"):
             agent.shield = True
         agent.shield = redman.Shield(pool)
         with self.assertRaisesRegex(redman.ArgumentError, "decisions last 1 control steps, but the agent's last 4"):

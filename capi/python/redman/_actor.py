@@ -11,10 +11,10 @@ import numpy as np
 
 from . import _abi
 from ._error import ArgumentError, UnsupportedError, VersionError
-from ._library import Handle, assign, bytes_of, check, lib, sized
+from ._library import Handle, assign, bytes_of, check, flag, instance, int32, lib, raw, sized
 from ._names import Hinted
 from ._pool import Pool
-from ._rows import Array, address, clouds, given
+from ._rows import Array, address, array_of, clouds, given
 
 if TYPE_CHECKING:
     from ._policy import Policy
@@ -69,7 +69,8 @@ class Actor(Hinted):
 
     def __init__(self, policy: Policy, where: Any = None, *, num_envs: Optional[int] = None, action_repeat: int = 1,
                  center: Any = None, stochastic: bool = False, seed: int = 0) -> None:
-        self.policy, self.stochastic = policy, stochastic
+        from ._policy import Policy
+        self.policy, self.stochastic = instance(policy, Policy, "policy"), stochastic
         self._pool, self._worlds = worlds_of(where)
         if where is not None and self._pool is None:
             raise ArgumentError(f"actor: {type(where).__name__} is not a pool or an environment of redman: give num_envs=, "
@@ -77,6 +78,7 @@ class Actor(Hinted):
         if (self._pool is None) == (num_envs is None):
             raise ArgumentError("actor: give either a pool or environment, or num_envs=")
         spec = sized(_abi.rdm_spec)
+        action_repeat = int32(action_repeat, "action_repeat")
         if self._pool is not None:
             if action_repeat != 1 or center is not None:
                 raise ArgumentError("actor: action_repeat and center cannot be given with a pool or an environment, which "
@@ -90,14 +92,14 @@ class Actor(Hinted):
             if action_repeat < 1:
                 raise ArgumentError(f"action_repeat: {action_repeat} is less than 1")
         self._repeat = spec.action_repeat
-        self.num_envs = int(num_envs or 0)
-        self._center = None if center is None else np.asarray(center, np.float64)
+        self.num_envs = int32(0 if num_envs is None else num_envs, "num_envs")
+        self._center = None if center is None else array_of(center, "center", np.float64)
         if self._center is not None and self._center.shape != (policy.info.action_dim,):
             raise ArgumentError(f"center: its shape is {self._center.shape}, but must be ({policy.info.action_dim},)")
         config = sized(_abi.rdm_actor_config)
         check(lib.rdm_actor_config_init(byref(config), ctypes.sizeof(config)))
         config.policy, config.spec = policy._open(), ctypes.pointer(spec)
-        assign(config, {"num_envs": self.num_envs, "seed": seed, "stochastic": int(stochastic)})
+        assign(config, {"num_envs": self.num_envs, "seed": seed, "stochastic": flag(stochastic, "stochastic")})
         with on_task(self._pool):
             self._handle = Handle(lib.rdm_actor_create, lib.rdm_actor_destroy, byref(config))
         self._lengths = {"num_envs": self.num_envs, "obs_dim": policy.info.obs_dim, "action_dim": policy.info.action_dim}
@@ -123,8 +125,8 @@ class Actor(Hinted):
         begun = self._begun()
         if begun is not None and begun.any():
             self.reset(begun)
-        if began is not None and np.any(began):
-            self.reset(began)
+        if began is not None:
+            self.reset(given(began, self._rows["mask"], self._lengths, "began", spread=True))
         chosen = None if mask is None else given(mask, self._rows["mask"], self._lengths, "mask")
         cloud, kept = self._cloud(points, point_class, point_color)
         check(lib.rdm_actor_act(self._handle.value, rows.ctypes.data, cloud, address(chosen), self._action.ctypes.data))
@@ -142,7 +144,7 @@ class Actor(Hinted):
                 deterministic: bool = True) -> tuple[Any, Any]:
         """Returns (action, state) like predict of a Stable-Baselines3 model. The actor holds actions itself and returns state
         unchanged."""
-        if deterministic == self.stochastic:
+        if flag(deterministic, "deterministic") == self.stochastic:
             raise ArgumentError(f"predict: deterministic={deterministic} cannot be used, since this actor "
                                 f"{'samples' if self.stochastic else 'takes the mean'}: make it with "
                                 f"policy.actor(..., stochastic={not deterministic})")
@@ -154,7 +156,8 @@ class Actor(Hinted):
 
     def set_state(self, state: bytes) -> None:
         """Continues from what state() returned; the actions that follow are bitwise the same."""
-        check(lib.rdm_actor_read_state(self._handle.value, bytes(state), len(state)))
+        data = raw(state, "state")
+        check(lib.rdm_actor_read_state(self._handle.value, data, len(data)))
 
     def _observed(self, obs: Any) -> tuple[Array, bool]:
         """Rows, and whether they were given as one row without the axis of worlds."""
@@ -176,7 +179,7 @@ class Actor(Hinted):
     @staticmethod
     def _single(obs: Any) -> bool:
         entry = next(iter(obs.values())) if isinstance(obs, dict) and "state" not in obs else obs
-        return np.ndim(entry["state"] if isinstance(entry, dict) else entry) == 1
+        return array_of(entry["state"] if isinstance(entry, dict) else entry, "obs").ndim == 1
 
     def _flat(self, obs: Any) -> Array:
         """The row of an observation in any form of the adapters: a row, {"state": row, ...}, a dict with an entry for each
@@ -188,7 +191,7 @@ class Actor(Hinted):
                 obs = np.concatenate([np.asarray(obs[name]) for name in self._pool.fields], axis=-1)
             else:
                 raise ArgumentError("obs: a dict must have the entry \"state\" or an entry for each field of these worlds")
-        return np.asarray(obs.detach().cpu() if hasattr(obs, "detach") else obs)
+        return array_of(obs.detach().cpu() if hasattr(obs, "detach") else obs, "obs")
 
     @staticmethod
     def _as_given(action: Array, obs: Any) -> Any:

@@ -20,14 +20,14 @@ from . import _abi, _discovery
 from ._abi import ActMode
 from ._error import ArgumentError, Error, NotFoundError, StateError, UsageError
 from ._files import read_whole, write_whole
-from ._library import Handle, assign, bytes_of, check, encoded, failure, lib, raise_kept, raised, sized, text
+from ._library import Handle, assign, bytes_of, check, encoded, failure, instance, int32, lib, raise_kept, raised, raw, real, sized, text
 from ._limits import CostLimits, each_cost
-from ._names import Hinted, keywords, nearest
-from ._options import Given, Options, Value, kind_of, laid, option_array, read_settings, settings_of
+from ._names import Hinted, keywords, nearest, one_of
+from ._options import Given, Options, Value, as_dict, kind_of, laid, option_array, read_settings, settings_of
 from ._policy import Policy
 from ._pool import Pool
 from ._recording import Recording
-from ._rows import Array, FloatArray, address, clouds, given
+from ._rows import Array, FloatArray, address, array_of, clouds, given
 from ._teach import Taught
 from ._tensors import Tensors
 
@@ -80,9 +80,9 @@ class _AgentTensors(Tensors, MutableMapping[str, FloatArray]):
 
     def __setitem__(self, name: str, values: Any) -> None:
         self[name]  # an unknown name is told first
-        array = np.ascontiguousarray(values, np.float32)
+        array = np.ascontiguousarray(array_of(values, name, np.float32))
         with self._owner._lock:
-            check(lib.rdm_agent_set_tensor(self._owner._open(), encoded(name), array.ctypes.data,
+            check(lib.rdm_agent_set_tensor(self._owner._open(), encoded(name, "name"), array.ctypes.data,
                                              array.size))
 
     def __delitem__(self, name: str) -> None:
@@ -135,11 +135,13 @@ class Agent(Taught, Hinted):
                  cost_dim: Optional[int] = None, costs: Optional[Sequence[str]] = None, task: str = "",
                  control_dt: float = 0.0, max_steps: int = 0, layout_hash: int = 0, initial_mean: Any = None,
                  fields: Optional[Mapping[str, tuple[int, int]]] = None, ranks: Optional[Ranks] = None) -> None:
-        own: dict[str, Any] = {"algo": algo, "seed": seed, "num_threads": threads, "options": dict(options or {}),
+        own: dict[str, Any] = {"algo": algo, "seed": seed, "num_threads": threads, "options": as_dict(options),
                                "ranks": ranks}
-        if isinstance(costs, str):
-            raise UsageError(f"costs: it must be a list of names, such as [{costs!r}]")
+        if costs is not None and (isinstance(costs, (str, bytes, type)) or not hasattr(costs, "__iter__") or
+                                  not all(isinstance(name, str) for name in costs)):
+            raise UsageError(f"costs: it must be a list of names, such as [\"fast\"], not {costs!r}")
         columns: Sequence[str] = [] if costs is None else list(costs)
+        cost_dim = None if cost_dim is None else int32(cost_dim, "cost_dim")
         if costs is not None and cost_dim not in (None, len(columns)):
             raise ArgumentError(f"cost_dim: it is {cost_dim}, but costs has {len(columns)} names")
         if pool is not None:
@@ -162,11 +164,13 @@ class Agent(Taught, Hinted):
             if costs is None:
                 columns = [f"cost {k}" for k in range(1 if cost_dim is None else cost_dim)]
             own.update(obs_dim=obs_dim, action_dim=action_dim, num_envs=1 if num_envs is None else num_envs,
-                       cost_dim=len(columns) if cost_dim is None else cost_dim, task=task, control_dt=float(control_dt),
+                       cost_dim=len(columns) if cost_dim is None else cost_dim, task=task, control_dt=control_dt,
                        max_steps=max_steps, layout_hash=layout_hash, initial_mean=None, defaults={}, cost_limits=None,
-                       fields=[(name, "", offset, count) for name, (offset, count) in (fields or {}).items()])
+                       fields=[] if fields is None else _named_parts(fields))
         if initial_mean is not None:
-            own["initial_mean"] = np.broadcast_to(np.asarray(initial_mean, np.float32), own["action_dim"]).copy()
+            lengths = {"action_dim": int32(own["action_dim"], "action_dim")}
+            own["initial_mean"] = given(initial_mean, _abi.ROWS["rdm_agent_config"]["initial_mean"], lengths, "initial_mean",
+                                        spread=True).copy()
         own["cost_names"] = list(columns)
         own["cost_limits"] = each_cost(cost_limits, own["cost_limits"], columns, "cost_limits")
         self._lock = threading.RLock()
@@ -193,19 +197,20 @@ class Agent(Taught, Hinted):
         with option encoder takes points [num_envs][encoder_points][3] too, with encoder_classes their classes, and with encoder_color
         their colours [num_envs][encoder_points][3], 0 to 255.
         """
-        if mode not in _MODES:
-            raise ArgumentError(f"mode: {mode!r} is none of {', '.join(_MODES)}")
+        chosen = one_of(mode, _MODES, "mode")
         rows = self._given("rdm_agent_act", "obs", obs)
         shape = (self.num_envs, self.action_dim)
         action = np.empty(shape, np.float32) if out is None else out
-        direct = action.shape == shape and action.dtype == np.float32 and action.flags.c_contiguous
+        if not isinstance(action, np.ndarray) or action.shape != shape:
+            raise UsageError(f"out: it must be an array [num_envs][action_dim] = {shape}, not {out!r}")
+        direct = action.dtype == np.float32 and action.flags.c_contiguous
         target = action if direct else np.empty(shape, np.float32)
         with self._lock:
             if points is None:
-                self._check(lib.rdm_agent_act(self._a, rows.ctypes.data, _MODES[mode], target.ctypes.data))
+                self._check(lib.rdm_agent_act(self._a, rows.ctypes.data, chosen, target.ctypes.data))
             else:
                 seen, kept = clouds(points, point_class, point_color, self.num_envs)
-                self._check(lib.rdm_agent_act_points(self._a, rows.ctypes.data, byref(seen), _MODES[mode],
+                self._check(lib.rdm_agent_act_points(self._a, rows.ctypes.data, byref(seen), chosen,
                                                      target.ctypes.data))
                 del kept
         if not direct:
@@ -218,15 +223,9 @@ class Agent(Taught, Hinted):
         record clears the memory of sampled actions when an episode ends. The memory of mean actions (mode "mean") is separate,
         so that evaluation does not disturb it, and only this call clears it.
         """
-        if mode not in _MODES:
-            raise ArgumentError(f"mode: {mode!r} is none of {', '.join(_MODES)}")
-        chosen = None
-        if mask is not None:
-            chosen = np.ascontiguousarray(np.asarray(mask, bool), np.uint8)
-            if chosen.shape != (self.num_envs,):
-                raise ArgumentError(f"mask: its shape is {chosen.shape}, but must be ({self.num_envs},)")
+        chosen = None if mask is None else self._given("rdm_agent_forget", "mask", mask)
         with self._lock:
-            self._check(lib.rdm_agent_forget(self._a, _MODES[mode], None if chosen is None else chosen.ctypes.data))
+            self._check(lib.rdm_agent_forget(self._a, one_of(mode, _MODES, "mode"), address(chosen)))
 
     def record(self, reward: Any, cost: Any = None, terminated: Any = None, truncated: Any = None,
                final_obs: Any = None, valid: Any = None, success: Any = None, steps: Any = None,
@@ -258,7 +257,7 @@ class Agent(Taught, Hinted):
         transition, kept = self._transition("put", reward=reward, cost=cost, terminated=terminated,
                                             truncated=truncated, final_obs=final_obs, valid=valid, success=success,
                                             steps=steps, limit=limit)
-        transition.generation = generation
+        assign(transition, {"generation": generation})
         with self._lock:
             self._check(lib.rdm_agent_put(self._a, rows.ctypes.data, actions.ctypes.data, byref(transition)))
         del kept
@@ -303,7 +302,7 @@ class Agent(Taught, Hinted):
         last piece."""
         epoch, done = sized(_abi.rdm_epoch), ctypes.c_int32()
         with self._lock:
-            self._check(lib.rdm_agent_update_slice(self._a, units, byref(done), byref(epoch)))
+            self._check(lib.rdm_agent_update_slice(self._a, int32(units, "units"), byref(done), byref(epoch)))
         return self._epoch(epoch) if done.value else None
 
     def discard(self) -> None:
@@ -317,6 +316,7 @@ class Agent(Taught, Hinted):
         The pool must have been reset and must not have autoreset off. Ctrl-C ends it early: this horizon is dropped,
         KeyboardInterrupt is raised, and agent and pool can still be used.
         """
+        instance(pool, Pool, "pool")
         epoch = sized(_abi.rdm_epoch)
         with self._lock, pool._lock, contextlib.ExitStack() as stack:
             if self._shield is not None:
@@ -336,11 +336,14 @@ class Agent(Taught, Hinted):
             pool = None if self._pool is None else self._pool()
         if pool is None:
             raise UsageError("learn: this agent has no pool: give one, agent.learn(steps, pool)")
-        if not pool._begun:
+        if callback is not None and not callable(callback):
+            raise UsageError(f"callback: it must be a function of the epoch, not {callback!r}")
+        steps = real(steps, "steps")
+        if not instance(pool, Pool, "pool")._begun:
             pool.reset()
         options = self.options
-        if not steps > 0:
-            raise ArgumentError(f"steps: {steps} is not above 0")
+        if not 0 < steps < math.inf:
+            raise ArgumentError(f"steps: {steps} is not a number above 0")
         for _ in range(math.ceil(steps / (self.num_envs * int(options["horizon"]) * int(options["action_repeat"])))):
             epoch = self.rollout(pool)
             if callback and callback(epoch):
@@ -450,8 +453,8 @@ class Agent(Taught, Hinted):
     @shield.setter
     def shield(self, shield: Optional[Shield]) -> None:
         from ._shield import Shield
-        if shield is not None and not isinstance(shield, Shield):
-            raise UsageError(f"shield: it must be a redman.Shield or None, not {shield!r}")
+        if shield is not None:
+            instance(shield, Shield, "shield", "; None takes it away")
         with self._lock:
             self._check(lib.rdm_agent_set_shield(self._a, None if shield is None else shield._open()))
             self._shield = shield
@@ -480,28 +483,26 @@ class Agent(Taught, Hinted):
     def load(self, state: Union[bytes, bytearray, memoryview, str, os.PathLike[str]]) -> None:
         """Continues from the bytes, or the path, of a save() of an agent of the same configuration; nothing changes when it
         fails."""
-        data = read_whole(state, "agent") if isinstance(state, (str, os.PathLike)) else bytes(state)
+        data = read_whole(state, "agent") if isinstance(state, (str, os.PathLike)) else raw(state, "state")
         with self._lock:
             self._check(lib.rdm_agent_read_state(self._a, data, len(data)))
 
     def write_checkpoint(self, path: Union[str, os.PathLike[str]], pool: Optional[Pool] = None,
                          note: bytes = b"") -> None:
         """Agent, pool and a note of your own in one file, replaced atomically."""
+        worlds, data = None if pool is None else instance(pool, Pool, "pool")._open(), raw(note, "note")
         with self._lock:
-            self._check(lib.rdm_checkpoint_write(encoded(path), self._a, None if pool is None else pool._open(),
-                                                 bytes(note), len(note)))
+            self._check(lib.rdm_checkpoint_write(encoded(path, "path"), self._a, worlds, data, len(data)))
 
     def read_checkpoint(self, path: Union[str, os.PathLike[str]], pool: Optional[Pool] = None) -> bytes:
         """Continues from write_checkpoint, and returns its note; nothing changes when it fails."""
-        size = c_size_t()
+        size, note, worlds = c_size_t(), ctypes.create_string_buffer(1), None if pool is None else instance(pool, Pool, "pool")._open()
         with self._lock:
-            raw = ctypes.create_string_buffer(1)
             while True:
-                self._check(lib.rdm_checkpoint_read(encoded(path), self._a, None if pool is None else pool._open(),
-                                                    raw, len(raw), byref(size)))
-                if size.value <= len(raw):
-                    return raw.raw[:size.value]
-                raw = ctypes.create_string_buffer(size.value)
+                self._check(lib.rdm_checkpoint_read(encoded(path, "path"), self._a, worlds, note, len(note), byref(size)))
+                if size.value <= len(note):
+                    return note.raw[:size.value]
+                note = ctypes.create_string_buffer(size.value)
 
     def close(self) -> None:
         """Destroys the agent. A second call does nothing."""
@@ -546,11 +547,19 @@ class Agent(Taught, Hinted):
             raise self._fail(code)
 
 
+def _named_parts(fields: Mapping[str, tuple[int, int]]) -> list[tuple[str, str, int, int]]:
+    """Argument fields as rows (name, unit, offset, count)."""
+    try:
+        return [(name, "", int32(offset, "fields"), int32(count, "fields")) for name, (offset, count) in fields.items()]
+    except (AttributeError, TypeError, ValueError):
+        raise UsageError(f"fields: it must be a dict of (offset, count) by name, not {fields!r}") from None
+
+
 def _config_of(pool: Pool) -> dict[str, Any]:
     """What rdm_agent_config_for_pool says, as plain values."""
     config = sized(_abi.rdm_agent_config)
     check(lib.rdm_agent_config_init(byref(config), ctypes.sizeof(config)))
-    check(lib.rdm_agent_config_for_pool(byref(config), pool._open()))
+    check(lib.rdm_agent_config_for_pool(byref(config), instance(pool, Pool, "pool", "; an environment has one, env.pool")._open()))
     pointed: dict[str, Array] = {}
     for name, rows in _abi.ROWS["rdm_agent_config"].items():
         if getattr(config, name):
@@ -580,7 +589,7 @@ def _created(own: Mapping[str, Any]) -> Handle:
     check(lib.rdm_agent_config_init(byref(config), ctypes.sizeof(config)))
     assign(config, {name: own[name] for name in ("obs_dim", "action_dim", "cost_dim", "num_envs", "num_threads", "seed",
                                                  "layout_hash", "control_dt", "max_steps")})
-    config.algo, config.task = encoded(own["algo"]), encoded(own["task"])
+    config.algo, config.task = encoded(own["algo"], "algo"), encoded(own["task"], "task")
     if own["options"]:
         config.settings = settings_of(own["options"], known_options(_discovery.algo(own["algo"]), own["options"]))
     defaults = option_array(own["defaults"])
@@ -591,9 +600,11 @@ def _created(own: Mapping[str, Any]) -> Handle:
         setattr(config, name, address(array))
     fields = (_abi.rdm_field * len(own["fields"]))()
     for field, (name, unit, offset, count) in zip(fields, own["fields"]):
-        field.name, field.unit, field.offset, field.count = encoded(name), encoded(unit), offset, count
+        field.name, field.unit, field.offset, field.count = encoded(name, "fields"), encoded(unit, "fields"), offset, count
     config.fields, config.num_fields = fields, len(fields)
-    ranks: Optional[Ranks] = own["ranks"]
+    ranks = own["ranks"]
     if ranks is not None:
-        return Handle(lib.rdm_agent_create_ranked, lib.rdm_agent_destroy, byref(config), byref(ranks._struct))
+        from ._ranks import Ranks
+        struct = instance(ranks, Ranks, "ranks")._struct
+        return Handle(lib.rdm_agent_create_ranked, lib.rdm_agent_destroy, byref(config), byref(struct))
     return Handle(lib.rdm_agent_create, lib.rdm_agent_destroy, byref(config))

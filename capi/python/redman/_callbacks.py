@@ -18,12 +18,11 @@ def c_function(member: str, function: Callable[..., Any]) -> Any:
     fail, and is the cause of the redman.Error that the call from Python then raises. Keep the result as long as the library
     may call it, for a task as long as it is registered.
     """
-    struct, _, name = member.partition(".")
     pointer: Any = getattr(ctypes, "_CFuncPtr")
     members: dict[str, Any] = {f"{key}.{field[0]}": field[1] for key, kind in _abi.STRUCTS.items()
                                for field in kind._fields_ if issubclass(field[1], pointer)}
-    if member not in members:
-        raise NotFoundError(f"{member}: no function of a struct of redman.h{nearest(member, members)}")
+    if not isinstance(member, str) or member not in members:
+        raise NotFoundError(f"{member}: no function of a struct of redman.h{nearest(str(member), members)}")
     if not callable(function):
         raise UsageError(f"{member}: it must be a function, not {function!r}")
     answers = members[member]._restype_ is ctypes.c_int32
@@ -33,7 +32,7 @@ def c_function(member: str, function: Callable[..., Any]) -> Any:
             code = function(*arguments)
             return (0 if code is None else int(code)) if answers else code
         except BaseException as error:
-            raised.append((name, error))
+            raised.append((member.partition(".")[2], error))
             return int(ResultCode.INTERNAL) if answers else None
 
     return members[member](call)

@@ -12,7 +12,7 @@ import numpy as np
 
 from ._error import FormatError, MissingFileError
 from ._html import image
-from ._files import MOST_JSON, MOST_TEXT, read_bytes
+from ._files import MOST_JSON, MOST_TEXT, as_path, read_bytes
 from ._names import Hinted
 from ._optional import optional
 
@@ -41,7 +41,7 @@ class _Drawn:
 
     def save(self, path: Union[str, os.PathLike[str]]) -> None:
         """Writes the picture as an SVG file."""
-        Path(path).write_text(self._repr_svg_(), encoding="utf-8")
+        as_path(path).write_text(self._repr_svg_(), encoding="utf-8")
 
 
 _DRAWS = "it draws itself in a notebook; save('curve.svg') writes the picture"

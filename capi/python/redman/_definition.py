@@ -13,8 +13,9 @@ import numpy as np
 
 from . import _abi
 from ._error import ArgumentError, UsageError
-from ._library import assign, encoded, text
+from ._library import assign, encoded, real, text
 from ._names import nearest
+from ._rows import array_of
 
 _KINDS: dict[tuple[type[ctypes.Structure], str], type[enum.IntEnum]] = {
     (_abi.rdm_robot_link, "kind"): _abi.JointKind, (_abi.rdm_robot_shape, "kind"): _abi.ShapeKind,
@@ -26,7 +27,7 @@ _NO_ROW = {"root": int(_abi.LinkRow.ROOT), "none": int(_abi.LinkRow.NONE)}
 
 def pose_of(value: Any, where: str = "pose") -> _abi.rdm_pose:
     """The struct of a pose: 3 numbers, m, or 7 with a quaternion (x, y, z, w)."""
-    numbers = np.asarray(value, np.float64).ravel()
+    numbers = array_of(value, where, np.float64).ravel()
     if numbers.size not in (3, 7):
         raise ArgumentError(f"{where}: give the 3 numbers of a position, or 7 with a quaternion, not {numbers.size}")
     pose = _abi.rdm_pose()
@@ -38,11 +39,13 @@ def pose_of(value: Any, where: str = "pose") -> _abi.rdm_pose:
 
 def fill(struct: ctypes.Structure, values: Mapping[str, Any], where: str, links: Iterable[str] = ()) -> list[Any]:
     """Writes values into an initialised struct; returns what it points at, which must be kept as long as the struct is used."""
+    if not isinstance(values, Mapping):
+        raise UsageError(f"{where}: it must be a dict, not {values!r}")
     kind, kept = type(struct), list[Any]()
     members = {name: of for name, of, *_ in kind._fields_ if name != "struct_size" and not name.startswith("reserved")}
     rows = list(links)
     if kind is _abi.rdm_robot_def:
-        rows = [str(link.get("name")) for link in values.get("links") or ()]
+        rows = [str(link.get("name")) for link in values.get("links") or () if isinstance(link, Mapping)]
     for name, value in values.items():
         if name not in members:
             raise UsageError(f"{where}: there is no {name!r}{nearest(name, members)}")
@@ -59,11 +62,11 @@ def fill(struct: ctypes.Structure, values: Mapping[str, Any], where: str, links:
 def _set(struct: ctypes.Structure, name: str, of: Any, value: Any, where: str, links: list[str]) -> list[Any]:
     table = _abi.ROWS.get(type(struct).__name__, {})
     if of is ctypes.c_char_p:
-        setattr(struct, name, encoded(value))
+        setattr(struct, name, encoded(value, where))
     elif of is _abi.rdm_pose:
         setattr(struct, name, pose_of(value, where))
     elif name in table:
-        array = np.ascontiguousarray(value, table[name].dtype)
+        array = np.ascontiguousarray(array_of(value, where, table[name].dtype))
         setattr(struct, name, array.ctypes.data)
         if table[name].shape[0] == f"num_{name}":
             setattr(struct, f"num_{name}", len(array))
@@ -84,7 +87,7 @@ def _set(struct: ctypes.Structure, name: str, of: Any, value: Any, where: str, l
     elif isinstance(value, str):
         setattr(struct, name, _word(type(struct), name, value, where, links))
     elif of in (ctypes.c_double, ctypes.c_float):
-        setattr(struct, name, float(value))
+        setattr(struct, name, real(value, where))
     else:
         assign(struct, {name: int(value) if isinstance(value, (bool, np.bool_)) else value})
     return []

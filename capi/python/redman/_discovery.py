@@ -170,7 +170,7 @@ def algo_at(index: int) -> Algo:
 def find(call: Callable[..., int], name: str) -> int:
     """The index of a task or an algorithm by its name."""
     index = c_int32()
-    check(call(encoded(name), byref(index)))
+    check(call(encoded(name, "name"), byref(index)))
     return index.value
 
 

@@ -12,9 +12,11 @@ import numpy as np
 from . import _png
 from ._error import ArgumentError, Error, StateError, UnsupportedError
 from ._feed import Feed, follow
+from ._files import as_path
 from ._film import film
 from ._html import player
-from ._names import Hinted, nearest
+from ._library import instance, whole
+from ._names import Hinted, nearest, one_of
 from ._rows import Array
 from ._tool import run_tool
 
@@ -28,9 +30,9 @@ _ENDINGS = (*_PAGES, ".png", *_FILMS)
 
 def ending_of(path: Union[str, os.PathLike[str]]) -> str:
     """The ending of a file that render() can write."""
-    ending = Path(path).suffix.lower()
+    ending = as_path(path).suffix.lower()
     if ending not in _ENDINGS:
-        raise ArgumentError(f"render: {Path(path).name!r} ends in none of {', '.join(_ENDINGS)}{nearest(ending, _ENDINGS)}")
+        raise ArgumentError(f"render: {as_path(path).name!r} ends in none of {', '.join(_ENDINGS)}{nearest(ending, _ENDINGS)}")
     return ending
 
 
@@ -55,6 +57,8 @@ class Episode(Hinted):
 
     def __init__(self, pool: Pool, env: int = 0, *, actor: str = "python", limits: Optional[Mapping[str, Optional[float]]] = None,
                  own: Optional[Own] = None, shield: str = "", seed: Optional[int] = None) -> None:
+        from ._pool import Pool
+        env = whole(env, "env", 0, instance(pool, Pool, "pool").num_envs - 1)
         self._feed = Feed(pool, env, 1, actor=actor, limits=limits, own=own, shield=shield, seed=seed)
         self._env, self._config = env, dict(pool._config)
         self._seconds = float(pool.control_dt) * pool.spec.action_repeat
@@ -86,9 +90,7 @@ class Episode(Hinted):
         """The name of a camera; None: "close" where the task has it, else its first."""
         if camera is None:
             return "close" if "close" in self.cameras else self.cameras[0] if self.cameras else ""
-        if camera not in self.cameras:
-            raise ArgumentError(f"camera: {camera!r} is none of {', '.join(self.cameras)}{nearest(camera, self.cameras)}")
-        return camera
+        return one_of(camera, dict(zip(self.cameras, self.cameras)), "camera")
 
     def render(self, path: Union[str, os.PathLike[str]], *, camera: Optional[str] = None, width: int = 640, height: int = 480,
                step: Optional[int] = None, strip: int = 6, look: str = "fine") -> None:
@@ -106,15 +108,12 @@ class Episode(Hinted):
         elif ending in _FILMS:
             film(Path(path), self.pictures(range(self.frames), view, width, height, look), 1 / self._seconds)
         else:
-            if step is not None and not 0 <= step < self.frames:
-                raise ArgumentError(f"step: {step} is not between 0 and {self.frames - 1}")
-            moments = self.moments(strip) if step is None else [step]
+            moments = self.moments(strip) if step is None else [whole(step, "step", 0, self.frames - 1)]
             Path(path).write_bytes(_png.row(list(self.pictures(moments, view, width, height, look))))
 
     def moments(self, count: int) -> list[int]:
         """Control steps at even distances from the first to the last."""
-        if count < 1:
-            raise ArgumentError(f"strip: {count} is less than 1")
+        count = whole(count, "strip", 1, 1 << 16)
         return sorted({round(k * (self.frames - 1) / max(1, count - 1)) for k in range(count)})
 
     def pictures(self, steps: Any, camera: Optional[str] = None, width: int = 640, height: int = 480,
@@ -122,7 +121,8 @@ class Episode(Hinted):
         """Pictures [height][width][3] of these control steps, one after the other."""
         from ._pool import Pool
         view = self.camera(camera)
-        with Pool(**{**self._config, "num_envs": 1, "threads": 0, "ranks": None, "autoreset": "off"}) as pool:
+        own: dict[str, Any] = {**self._config, "num_envs": 1, "threads": 0, "ranks": None, "autoreset": "off"}
+        with Pool(**own) as pool:
             for step in steps:
                 pool.set_state(self._states[step], 0)
                 yield pool.render(camera=view or None, width=width, height=height, look=look)

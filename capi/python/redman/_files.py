@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Union
 
 from ._error import FileError, MissingFileError
+from ._library import encoded
 from ._names import nearest
 
 
@@ -23,10 +24,15 @@ def _beside(path: Path) -> str:
     return nearest(path.name, names)
 
 
+def as_path(value: Union[str, os.PathLike[str]], name: str = "path") -> Path:
+    """An argument that is a path."""
+    return Path(os.fsdecode(encoded(value, name)))
+
+
 def must_exist(path: Union[str, os.PathLike[str]], what: str) -> None:
     """Raises MissingFileError with the nearest name if there is no such file; what: the kind of file."""
-    if not os.path.exists(path):
-        raise MissingFileError(f"{what} {os.fspath(path)}: there is no such file{_beside(Path(path))}")
+    if not as_path(path).exists():
+        raise MissingFileError(f"{what} {os.fspath(path)}: there is no such file{_beside(as_path(path))}")
 
 
 MOST_BYTES = 1 << 28  # of a policy or a checkpoint
@@ -55,14 +61,14 @@ def read_whole(path: Union[str, os.PathLike[str]], what: str, most: int = MOST_B
     try:
         return read_bytes(path, most)
     except FileNotFoundError:
-        raise MissingFileError(f"{what} {os.fspath(path)}: there is no such file{_beside(Path(path))}") from None
+        raise MissingFileError(f"{what} {os.fspath(path)}: there is no such file{_beside(as_path(path))}") from None
     except OSError as error:
         raise FileError(f"{what} {os.fspath(path)}: {error.strerror}") from None
 
 
 def write_whole(path: Union[str, os.PathLike[str]], data: bytes, what: str) -> None:
     """Writes a file entirely or leaves the old one: writes under another name first."""
-    temporary = Path(f"{os.fspath(path)}.part")
+    temporary = Path(f"{as_path(path)}.part")
     try:
         temporary.write_bytes(data)
         os.replace(temporary, path)
@@ -70,6 +76,6 @@ def write_whole(path: Union[str, os.PathLike[str]], data: bytes, what: str) -> N
         with contextlib.suppress(OSError):
             temporary.unlink()
         kind = MissingFileError if isinstance(error, FileNotFoundError) else FileError
-        folder = Path(path).parent
+        folder = as_path(path).parent
         why = f"folder {folder} is not there" if not folder.is_dir() else error.strerror
         raise kind(f"{what} {os.fspath(path)}: cannot be written: {why}") from None

@@ -10,9 +10,10 @@ from typing import Any, Callable, Optional, TypeVar, Union
 
 from . import _abi, _import_abi
 from ._discovery import TaskInfo, task_at
-from ._error import ArgumentError, Error, UnsupportedError, error_of
+from ._error import Error, UnsupportedError, error_of
 from ._files import must_exist
-from ._library import Handle, assign, encoded, lib, sized, text
+from ._library import Handle, assign, encoded, flag, lib, sized, text
+from ._names import one_of
 from ._object import Object, created as object_created, object_at
 from ._robot import Note, Robot, created as robot_created, robot_at
 
@@ -99,23 +100,23 @@ def load_robot(path: Source, *, name: Optional[str] = None, kind: Optional[str] 
     """
     config = sized(_import_abi.rdm_import_config)
     _check(importer().rdm_import_config_init(byref(config), ctypes.sizeof(config)))
-    config.format = _number(_import_abi.ImportFormat, format, "format")
+    config.format = one_of(format, _numbers(_import_abi.ImportFormat), "format")
     if kind is not None:
-        config.kind = _number(_abi.RobotKind, kind, "kind")
-    joined = ",".join(tips) if isinstance(tips, (list, tuple)) else tips
+        config.kind = one_of(kind, _numbers(_abi.RobotKind), "kind")
+    joined = ",".join(map(str, tips)) if isinstance(tips, (list, tuple)) else tips
     words = {"name": name, "root": root, "palm": palm, "tips": joined, "mount": mount, "flange": flange, "folder": folder,
              "packages": packages}
     for key, value in words.items():
-        setattr(config, key, None if value is None else encoded(value))
-    config.density, config.slide_range = float(density), float(slide_range)
-    assign(config, {"skip_meshes": int(skip_meshes), "mend_inertia": int(mend_inertia)})
+        setattr(config, key, None if value is None else encoded(value, key))
+    assign(config, {"density": density, "slide_range": slide_range, "skip_meshes": flag(skip_meshes, "skip_meshes"),
+                    "mend_inertia": flag(mend_inertia, "mend_inertia")})
 
     def make(old: Optional[int]) -> Robot:
         if isinstance(path, bytes):
             read = _read("rdm_import_read", path, len(path), byref(config))
         else:
-            read = _read("rdm_import_read_file", encoded(path), byref(config))
-        if check:
+            read = _read("rdm_import_read_file", encoded(path, "path"), byref(config))
+        if flag(check, "check"):
             _check(importer().rdm_import_check(read.value))
         struct = sized(_abi.rdm_robot_def)
         _check(importer().rdm_import_get_robot_def(read.value, byref(struct)))
@@ -137,7 +138,7 @@ def load_object(path: Source) -> Object:
         if isinstance(path, bytes):
             read = _read("rdm_import_read_object", path, len(path))
         else:
-            read = _read("rdm_import_read_object_file", encoded(path))
+            read = _read("rdm_import_read_object_file", encoded(path, "path"))
         struct = sized(_abi.rdm_object_def)
         _check(importer().rdm_import_get_object_def(read.value, byref(struct)))
         if old is not None:
@@ -162,7 +163,7 @@ def load_task(path: Source) -> TaskInfo:
             if isinstance(path, bytes):
                 _check(importer().rdm_import_read_task(byref(number), path, len(path), None))
             else:
-                _check(importer().rdm_import_read_task_file(byref(number), encoded(path)))
+                _check(importer().rdm_import_read_task_file(byref(number), encoded(path, "path")))
         return task_at(number.value)
 
     return _once("task", path, None, lambda i: _alive(lib.rdm_task_at, _abi.rdm_task, i), task_at, make)
@@ -203,11 +204,8 @@ def _notes_of(read: Handle) -> tuple[Note, ...]:
     return tuple(out)
 
 
-def _number(words: Any, word: str, what: str) -> int:
-    known = {member.name.lower(): int(member) for member in words}
-    if word not in known:
-        raise ArgumentError(f"{what}: {word!r} is none of {', '.join(known)}")
-    return known[word]
+def _numbers(words: Any) -> dict[str, int]:
+    return {member.name.lower(): int(member) for member in words}
 
 
 def _alive(call: Callable[..., int], kind: type[ctypes.Structure], number: int) -> bool:

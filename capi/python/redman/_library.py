@@ -10,10 +10,13 @@ from ctypes import byref, c_size_t
 from pathlib import Path
 from typing import Any, Callable, Mapping, Optional, TypeVar
 
+import numpy as np
+
 from . import _abi
 from ._error import ArgumentError, Error, RangeError, UsageError, error_of
 
 Struct = TypeVar("Struct", bound=ctypes.Structure)
+Thing = TypeVar("Thing")
 
 
 def _candidates() -> list[str]:
@@ -73,15 +76,15 @@ def text(value: bytes | None) -> str:
     return "" if value is None else value.decode("utf-8", errors="replace")
 
 
-def encoded(value: str | os.PathLike[str]) -> bytes:
-    """A text or a path, encoded for the library."""
+def encoded(value: str | os.PathLike[str], name: str) -> bytes:
+    """A text or a path, encoded for the library. name: of the argument."""
     try:
-        raw = os.fsencode(value)
+        out = os.fsencode(value)
     except TypeError:
-        raise UsageError(f"give a text or a path, not {value!r}") from None
-    if b"\0" in raw:
-        raise ArgumentError(f"{value!r}: a text must not contain a zero byte")
-    return raw
+        raise UsageError(f"{name}: it must be a text or a path, not {value!r}") from None
+    if b"\0" in out:
+        raise ArgumentError(f"{name}: {value!r} must not contain a zero byte")
+    return out
 
 
 # What functions of Python that the library called have raised, (function, exception), until a call from Python tells it.
@@ -91,7 +94,7 @@ raised: list[tuple[str, BaseException]] = []
 # What the library's texts tell to call, as it is said here.
 _CALLS = {
     "rdm_agent_set_recording": "agent.recording = recording", "rdm_agent_update_slice": "agent.update_slice()",
-    "rdm_agent_discard": "agent.discard()", "rdm_policy_act_points": "policy.act(obs, points=points)",
+    "rdm_agent_clone": "agent.clone()", "rdm_agent_discard": "agent.discard()", "rdm_policy_act_points": "policy.act(obs, points=points)",
     "rdm_policy_act_points_state": "policy.act(obs, points=points, state=state)",
     "rdm_policy_act_state": "policy.act(obs, state)", "rdm_policy_act": "policy.act()", "rdm_policy_sample": "policy.sample()"}
 
@@ -145,6 +148,38 @@ def whole(value: Any, name: str, low: int, high: int) -> int:
     return number
 
 
+def real(value: Any, name: str) -> float:
+    """A number argument."""
+    try:
+        if not isinstance(value, (str, bytes, bytearray)):
+            return float(value)
+    except (TypeError, ValueError, OverflowError):
+        pass
+    raise UsageError(f"{name}: it must be a number, not {value!r}")
+
+
+def flag(value: Any, name: str) -> int:
+    """An argument that is True or False."""
+    if not isinstance(value, (int, np.bool_)):  # a bool is an int
+        raise UsageError(f"{name}: it must be True or False, not {value!r}")
+    return int(bool(value))
+
+
+def raw(value: Any, name: str) -> bytes:
+    """A bytes argument."""
+    try:
+        return bytes(memoryview(value))
+    except TypeError:
+        raise UsageError(f"{name}: it must be bytes, not {value!r}") from None
+
+
+def instance(value: Any, kind: type[Thing], name: str, instead: str = "") -> Thing:
+    """An argument that must be an object of a public class. instead: what else a user may have meant."""
+    if not isinstance(value, kind):
+        raise UsageError(f"{name}: it must be a redman.{kind.__name__}, not {value!r}{instead}")
+    return value
+
+
 def all_cores(threads: Optional[int], worlds: int) -> int:
     """The number of threads; None: as many as this process has cores, but no more than worlds."""
     if threads is not None:
@@ -159,10 +194,12 @@ def int32(value: Any, name: str) -> int:
 
 
 def assign(struct: ctypes.Structure, values: Mapping[str, Any]) -> None:
-    """Sets fields; an integer that does not fit is refused."""
+    """Sets fields to numbers; an integer that does not fit is refused."""
     kinds = dict((field[0], field[1]) for field in struct._fields_)
     for name, value in values.items():
-        if kinds[name] not in (ctypes.c_double, ctypes.c_float):
+        if kinds[name] in (ctypes.c_double, ctypes.c_float):
+            value = real(value, name)
+        else:
             bits = 8 * ctypes.sizeof(kinds[name])
             signed = kinds[name](-1).value < 0
             low, high = (-(1 << bits - 1), (1 << bits - 1) - 1) if signed else (0, (1 << bits) - 1)

@@ -41,7 +41,7 @@ def each_cost(wanted: CostLimits, usual: Optional[Iterable[float]], columns: Seq
             raise ArgumentError(f"{name}: it cannot be given, since there are no costs")
         limits[0] = number(float(wanted))
         return limits
-    if isinstance(wanted, str) or not hasattr(wanted, "__iter__"):
+    if isinstance(wanted, (str, bytes, type)) or not hasattr(wanted, "__iter__"):
         raise UsageError(f"{name}: it must be a number, a list with one for each cost, or a dict by name, not {wanted!r}")
     listed = [number(limit) for limit in wanted]
     if len(listed) != len(columns):

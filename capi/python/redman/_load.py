@@ -2,12 +2,11 @@
 from __future__ import annotations
 
 import os
-from pathlib import Path
 from typing import Any, Callable, Union
 
 from ._curve import curve
 from ._error import FormatError
-from ._files import must_exist
+from ._files import as_path, must_exist
 from ._importer import LOADERS
 from ._map import Map
 from ._paths import ENDINGS
@@ -33,7 +32,7 @@ def load(path: Union[str, os.PathLike[str]]) -> Any:
     For what an agent has saved, use Agent.load or Agent.read_checkpoint of an agent with the same configuration.
     """
     must_exist(path, "load")
-    file = Path(path)
+    file = as_path(path)
     if file.is_dir():
         return Policy.load(file)
     if file.name == "progress.csv":

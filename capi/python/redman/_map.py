@@ -13,10 +13,10 @@ import numpy as np
 from . import _abi
 from ._abi import MapFormat
 from ._error import ArgumentError, StateError, UsageError
-from ._library import Handle, assign, bytes_of, check, encoded, failure, filled, int32, lib, sized
-from ._names import Hinted, nearest
+from ._library import Handle, assign, bytes_of, check, encoded, failure, filled, flag, instance, int32, lib, raw, real, sized
+from ._names import Hinted, nearest, one_of
 from ._pool import Pool
-from ._rows import Array, FloatArray, address, given
+from ._rows import Array, FloatArray, address, array_of, given
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -25,7 +25,7 @@ _FORMATS = {"bt": MapFormat.BINARY, "ot": MapFormat.FULL}
 
 
 def _points(points: Any, name: str = "points") -> Array:
-    rows = np.ascontiguousarray(points, np.float32)
+    rows = np.ascontiguousarray(array_of(points, name, np.float32))
     if rows.ndim != 2 or rows.shape[1] != 3:
         raise ArgumentError(f"{name}: its shape is {rows.shape}, but must be (count, 3)")
     return rows
@@ -54,10 +54,7 @@ class Map(Hinted):
         for name, value in self._config.items():
             if name not in known:
                 raise UsageError(f"Map: {name!r} is none of {', '.join(sorted(known))}{nearest(name, known)}")
-            if name == "memory":
-                assign(struct, {name: value})
-            else:
-                setattr(struct, name, float(value))
+            assign(struct, {name: value})
         self._handle: Optional[Handle] = Handle(lib.rdm_map_create, lib.rdm_map_destroy, byref(struct))
         self._m = self._handle.value
         self._memory, self._max_range = int(struct.memory), float(struct.max_range)
@@ -81,12 +78,13 @@ class Map(Hinted):
              skip: Sequence[int] = ()) -> int:
         """Adds one scan by a camera of the pool's task; rays that end on a shape in skip are left out. Returns how many
         voxels a full map left out (0 in one that is large enough), and warns if there were any."""
-        left = np.ascontiguousarray(skip, np.int32)
+        instance(pool, Pool, "pool")
+        left = np.ascontiguousarray(array_of(skip, "skip", np.int32))
         dropped = c_uint64()
         name = next(iter(pool.cameras), "") if camera is None else camera
         env, width, height = int32(env, "env"), int32(width, "width"), int32(height, "height")
         with self._lock, pool._lock:
-            self._check(lib.rdm_map_scan(self._m, pool._open(), env, encoded(name), width, height,
+            self._check(lib.rdm_map_scan(self._m, pool._open(), env, encoded(name, "camera"), width, height,
                                          address(left) if len(left) else None, len(left), byref(dropped)))
         return self._left_out(dropped.value)
 
@@ -131,7 +129,7 @@ class Map(Hinted):
                 for name, value in (("origin", origin), ("direction", direction))]
         hit = np.empty(3, np.float32)
         found = c_int32()
-        self._check(lib.rdm_map_raycast(self._open(), *(row.ctypes.data for row in rays), range, int(through_unknown),
+        self._check(lib.rdm_map_raycast(self._open(), *(row.ctypes.data for row in rays), real(range, "range"), flag(through_unknown, "through_unknown"),
                                         hit.ctypes.data, byref(found)))
         return hit if found.value else None
 
@@ -139,7 +137,7 @@ class Map(Hinted):
         """[count] distance from each point to the nearest occupied voxel, m; `most` where none is that near."""
         rows = _points(points)
         out = np.empty(len(rows), np.float32)
-        self._check(lib.rdm_map_get_distances(self._open(), rows.ctypes.data, len(rows), most, out.ctypes.data))
+        self._check(lib.rdm_map_get_distances(self._open(), rows.ctypes.data, len(rows), real(most, "most"), out.ctypes.data))
         return out
 
     def grid(self, pose: Sequence[float], n: Sequence[int], side: float) -> npt.NDArray[np.int8]:
@@ -148,7 +146,7 @@ class Map(Hinted):
         fits = all(1 <= count <= 1024 for count in counts)  # if not, the call says so
         out = np.empty(tuple(counts) if fits else 0, np.int8)
         self._check(lib.rdm_map_get_grid(self._open(), self._given("rdm_map_get_grid", "pose", pose).ctypes.data,
-                                     counts.ctypes.data, side, out.ctypes.data))
+                                     counts.ctypes.data, real(side, "side"), out.ctypes.data))
         return out
 
     def clear(self) -> None:
@@ -163,23 +161,22 @@ class Map(Hinted):
 
     def save(self, format: str = "ot") -> bytes:
         """The bytes of an OctoMap file: "ot" with probabilities, "bt" occupied or free."""
-        if format not in _FORMATS:
-            raise ArgumentError(f"format: {format!r} is none of {', '.join(_FORMATS)}")
-        return bytes_of(lib.rdm_map_write, self._open(), _FORMATS[format])
+        return bytes_of(lib.rdm_map_write, self._open(), one_of(format, _FORMATS, "format"))
 
     def load(self, data: bytes) -> None:
         """Replaces the contents of the map by those of a file's bytes."""
+        data = raw(data, "data")
         with self._lock:
-            self._check(lib.rdm_map_read(self._m, bytes(data), len(data)))
+            self._check(lib.rdm_map_read(self._m, data, len(data)))
 
     def save_file(self, path: Union[str, os.PathLike[str]]) -> None:
         """Writes a .bt or .ot file, by its ending, entirely or not at all."""
-        self._check(lib.rdm_map_write_file(self._open(), encoded(path)))
+        self._check(lib.rdm_map_write_file(self._open(), encoded(path, "path")))
 
     def load_file(self, path: Union[str, os.PathLike[str]]) -> None:
         """Reads .bt or .ot."""
         with self._lock:
-            self._check(lib.rdm_map_read_file(self._m, encoded(path)))
+            self._check(lib.rdm_map_read_file(self._m, encoded(path, "path")))
 
     def close(self) -> None:
         """Destroys the map. A second call does nothing."""

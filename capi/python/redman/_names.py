@@ -7,8 +7,8 @@ import inspect
 from typing import TYPE_CHECKING, Any, Callable, ClassVar, Iterable, Mapping, TypeVar
 
 from . import _abi
-from ._error import UsageError
-from ._library import check, encoded, lib, text
+from ._error import ArgumentError, UsageError
+from ._library import Thing, check, encoded, lib, text
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -38,8 +38,15 @@ def nearest(name: str, known: Iterable[str]) -> str:
     if own := meant(name, names):
         return f"; nearest is {own}"
     out = ctypes.create_string_buffer(4 * _abi.RDM_TEXT_SIZE)
-    check(lib.rdm_nearest_names(encoded(name.replace("\0", " ")), encoded("\n".join(names)), out, len(out)))
+    check(lib.rdm_nearest_names(encoded(name.replace("\0", " "), "name"), encoded("\n".join(names), "names"), out, len(out)))
     return text(out.value)
+
+
+def one_of(value: Any, known: Mapping[str, Thing], name: str) -> Thing:
+    """What a word stands for that an argument must be."""
+    if not isinstance(value, str) or value not in known:
+        raise ArgumentError(f"{name}: {value!r} is none of {', '.join(known)}{nearest(str(value), known)}")
+    return known[value]
 
 
 def keywords(*, aliases: Mapping[str, str] = {}, hints: Mapping[str, str] = {},

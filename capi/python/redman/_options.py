@@ -42,6 +42,15 @@ class Told(Dict[str, Value]):
 Kinds = Mapping[str, int]  # OptionKind of each key; noise.right.tip_force is one of noise.FIELD
 
 
+def as_dict(options: Optional[Options], name: str = "options") -> dict[str, Any]:
+    """An argument that is a dict of options, or None for none."""
+    if options is None:
+        return {}
+    if not isinstance(options, Mapping) or not all(isinstance(key, str) for key in options):
+        raise UsageError(f"{name}: it must be a dict of options by name, not {options!r}")
+    return dict(options)
+
+
 def shown(key: str, value: Any, kinds: Kinds = {}) -> str:
     """A value in the text form that the library reads, exact: true, 0.1, 16, egg, 0.7..1.3, 64,64, rgb+depth."""
     if isinstance(value, str):
@@ -78,14 +87,14 @@ def settings_of(options: Options, kinds: Kinds = {}) -> bytes:
         if "\n" in line or "=" in key:
             raise ArgumentError(f"option {key!r}: the key must not contain '=', and the value must be one line")
         lines.append(line)
-    return encoded("\n".join(lines))
+    return encoded("\n".join(lines), "options")
 
 
 def option_array(options: Options, kinds: Kinds = {}) -> Any:
     """[len(options)] rdm_option, which keeps its texts alive."""
     array = (_abi.rdm_option * len(options))()
     for row, (key, value) in zip(array, options.items()):
-        row.key, row.text = encoded(key), encoded(shown(key, value, kinds))
+        row.key, row.text = encoded(key, "option"), encoded(shown(key, value, kinds), f"option {key}")
     return array
 
 

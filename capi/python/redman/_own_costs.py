@@ -9,6 +9,7 @@ import numpy as np
 from ._abi import Status
 from ._error import ArgumentError, NotFoundError, UsageError
 from ._imported import path_of, thing_at
+from ._library import instance
 from ._names import Hinted, nearest
 from ._pool import Pool
 from ._rows import Array, FloatArray
@@ -32,7 +33,7 @@ class Rows(Hinted):
     pool: Pool
 
     def __init__(self, pool: Pool) -> None:
-        self.pool = pool
+        self.pool = instance(pool, Pool, "pool")
 
     @property
     def obs(self) -> FloatArray:
@@ -87,8 +88,8 @@ class Rows(Hinted):
     def field(self, name: str) -> FloatArray:
         """[n][count] a field of the observation in SI units: one with unit "5 m/s" is multiplied by 5. pool.fields lists all."""
         fields = self.pool._fields
-        if name not in fields:
-            raise NotFoundError(f"field {name}: {self.pool.task.name} has none of that name{nearest(name, fields)}")
+        if not isinstance(name, str) or name not in fields:
+            raise NotFoundError(f"field {name}: {self.pool.task.name} has none of that name{nearest(str(name), fields)}")
         scale = fields[name].scale
         if math.isnan(scale):
             raise ArgumentError(f"field {name}: its entries have different units ({fields[name].unit}): take "

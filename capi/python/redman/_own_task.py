@@ -11,7 +11,7 @@ import numpy as np
 from . import _abi
 from ._abi import OptionKind, ResultCode
 from ._error import ArgumentError, UsageError
-from ._library import check, encoded, lib, raised, sized
+from ._library import assign, check, encoded, lib, raised, sized
 from ._names import nearest
 from ._options import option_array
 from ._scene import SceneBuilder
@@ -230,16 +230,17 @@ class _Description:
         kind, d = self.kind, sized(_abi.rdm_task_def)
         check(lib.rdm_task_def_init(byref(d), ctypes.sizeof(d)))
         summary = (kind.__doc__ or "").strip().split("\n")[0] if kind.__doc__ is not Task.__doc__ else ""
-        d.name, d.summary = encoded(kind.task_name()), encoded(summary)
-        d.max_steps, d.action_dim, d.obs_limit = int(kind.max_steps), kind.action_dim, float(kind.obs_limit)
+        d.name, d.summary = encoded(kind.task_name(), f"{self.where}.name"), encoded(summary, f"{self.where}.__doc__")
+        assign(d, {"max_steps": kind.max_steps, "action_dim": kind.action_dim, "obs_limit": kind.obs_limit})
         d.state_bytes, d.instance_bytes = self.state_bytes, ctypes.sizeof(c_void_p)
         rows = (_abi.rdm_field_def * len(self.fields))()
         for row, (name, (count, unit, low, high)) in zip(rows, self.fields.items()):
-            row.name, row.unit, row.count, row.low, row.high = encoded(name), encoded(unit), count, low, high
+            row.name, row.unit = encoded(name, f"{self.where}.fields"), encoded(unit, f"{self.where}.fields")
+            row.count, row.low, row.high = count, low, high
         d.fields, d.num_fields = rows, len(rows)
         costs = (_abi.rdm_cost_def * len(self.costs))()
         for cost, (name, (limit, told)) in zip(costs, self.costs.items()):
-            cost.name, cost.help, cost.limit = encoded(name), encoded(told), limit
+            cost.name, cost.help, cost.limit = encoded(name, f"{self.where}.costs"), encoded(told, f"{self.where}.costs"), limit
         d.costs, d.num_costs = costs, len(costs)
         options = (_abi.rdm_option_def * len(kind.options))()
         for option, (key, value) in zip(options, kind.options.items()):
@@ -268,9 +269,9 @@ class _Description:
         return out.value
 
     def _option(self, row: Any, key: str, value: Any) -> None:
-        row.key, row.help = encoded(key), encoded(f"of {self.where}")
+        row.key, row.help = encoded(key, f"{self.where}.options"), encoded(f"of {self.where}", "help")
         if _pair(value):
-            row.kind, row.choices, row.text = OptionKind.NUMBER, b"a..b", encoded(f"{float(value[0])!r}..{float(value[1])!r}")
+            row.kind, row.choices, row.text = OptionKind.NUMBER, b"a..b", encoded(f"{float(value[0])!r}..{float(value[1])!r}", key)
             row.number = (value[0] + value[1]) / 2
         elif isinstance(value, bool):
             row.kind, row.number = OptionKind.FLAG, int(value)
@@ -279,7 +280,7 @@ class _Description:
         elif isinstance(value, float):
             row.kind, row.number = OptionKind.NUMBER, value
         elif isinstance(value, str):
-            row.kind, row.text = OptionKind.TEXT, encoded(value)
+            row.kind, row.text = OptionKind.TEXT, encoded(value, key)
         else:
             raise UsageError(f"{self.where}.options[{key!r}]: it must be a number, a bool, a text or (low, high), not {value!r}")
         row.low, row.high = (-2147483648, 2147483647) if row.kind == OptionKind.INTEGER else (-1e9, 1e9)
@@ -314,13 +315,13 @@ class _Description:
     def _value(self, scene: Any, key: str, default: Any) -> Any:
         if isinstance(default, str):
             out = ctypes.c_char_p()
-            check(lib.rdm_scene_get_text(scene, encoded(key), byref(out)))
+            check(lib.rdm_scene_get_text(scene, encoded(key, "key"), byref(out)))
             return (out.value or b"").decode()
         low, high = ctypes.c_double(), ctypes.c_double()
         if _pair(default):
-            check(lib.rdm_scene_get_range(scene, encoded(key), byref(low), byref(high)))
+            check(lib.rdm_scene_get_range(scene, encoded(key, "key"), byref(low), byref(high)))
             return low.value, high.value
-        check(lib.rdm_scene_get_number(scene, encoded(key), byref(low)))
+        check(lib.rdm_scene_get_number(scene, encoded(key, "key"), byref(low)))
         return type(default)(low.value)
 
     def _task(self, instance: int) -> Task:

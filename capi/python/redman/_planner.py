@@ -14,10 +14,10 @@ from ._actor import on_task
 from ._agent import Agent
 from ._callbacks import c_function
 from ._error import UsageError
-from ._library import Handle, assign, bytes_of, check, filled, int32, lib, raise_kept, raised, sized
+from ._library import Handle, assign, bytes_of, check, filled, instance, int32, lib, raise_kept, raised, raw, sized
 from ._limits import CostLimits, each_cost
 from ._names import Hinted, keywords
-from ._options import Options, Value, read_settings, settings_of
+from ._options import Options, Value, as_dict, read_settings, settings_of
 from ._policy import Backup, policy_of
 from ._pool import Pool
 from ._rows import FloatArray, given
@@ -78,18 +78,19 @@ class Planner(Hinted):
     def __init__(self, pool: Pool, *, policy: Optional[Backup] = None, agent: Optional[Agent] = None, seed: int = 0,
                  threads: int = 0, noise: Any = None, cost_limits: CostLimits = None, options: Optional[Options] = None,
                  stop: Optional[Stop] = None) -> None:
-        if not isinstance(pool, Pool):
-            raise UsageError(f"pool: it must be a redman.Pool, not {pool!r}")
-        if agent is not None and not isinstance(agent, Agent):
-            raise UsageError(f"agent: it must be a redman.Agent, which has critics, not {agent!r}; give a policy as policy=")
+        instance(pool, Pool, "pool")
+        if agent is not None:
+            instance(agent, Agent, "agent", ", which has no critics; give a policy as policy=")
+        if stop is not None and not callable(stop):
+            raise UsageError(f"stop: it must be a function of the number of control steps, not {stop!r}")
         first = next(iter(pool.costs.values()), None)
         usual = [-1.0] * pool.cost_dim
         if first is not None and first.limit is not None:
             usual[0] = first.limit
         self._make(pool, {
             "policy": None if policy is None else policy_of(policy, pool.task), "agent": agent, "seed": seed,
-            "num_threads": threads, "options": dict(options or {}),
-            "noise": None if noise is None else np.broadcast_to(np.asarray(noise, np.float32), pool.action_dim).copy(),
+            "num_threads": threads, "options": as_dict(options),
+            "noise": None if noise is None else given(noise, _abi.ROWS["rdm_planner_config"]["noise"], {"action_dim": pool.action_dim}, "noise", spread=True),
             "cost_limits": None if cost_limits is None else each_cost(cost_limits, usual, list(pool.costs), "cost_limits"),
             "stop": stop})
 
@@ -123,7 +124,7 @@ class Planner(Hinted):
     def act(self, env: int = 0, pool: Optional[Pool] = None) -> FloatArray:
         """[action_dim] the best action for one world in its present state, in another pool of the same task and options if
         one is given. StateError where no episode runs."""
-        where = self.pool if pool is None else pool
+        where = self.pool if pool is None else instance(pool, Pool, "pool")
         action = np.empty(self.spec.action_dim, np.float32)
         with where._lock, self._lock, contextlib.nullcontext() if self._agent is None else self._agent._lock:
             check(lib.rdm_planner_act(self._handle.value, where._open(), int32(env, "env"), action.ctypes.data,
@@ -181,8 +182,9 @@ class Planner(Hinted):
 
     def set_state(self, state: bytes) -> None:
         """Continues from state() of a planner of the same task and options, with the same bytes."""
+        data = raw(state, "state")
         with self._lock:
-            check(lib.rdm_planner_read_state(self._handle.value, bytes(state), len(state)))
+            check(lib.rdm_planner_read_state(self._handle.value, data, len(data)))
 
     def __getstate__(self) -> dict[str, Any]:
         return {"pool": self.pool, "config": self._config, "state": self.state()}

@@ -16,15 +16,15 @@ from ._discovery import TaskName, task_name
 from ._episode import Episode, played
 from ._error import ArgumentError, NotFoundError
 from ._html import number, pair, share, table
-from ._library import all_cores
+from ._library import all_cores, whole
 from ._limits import CostLimits, each_cost
-from ._names import folded, keywords, nearest
-from ._options import Options
+from ._names import folded, keywords, nearest, one_of
+from ._options import Options, as_dict
 from ._own_costs import Costs, Own, RowFunction
 from ._policy import Backup, Origin, Policy
 from ._pool import Pool
 from ._rows import Array, DoubleArray, FloatArray
-from ._shield import Shield, Shielding, shield_of
+from ._shield import Shield, Shielding, is_wanted, shield_of
 from ._worlds import Center, center_of
 
 if TYPE_CHECKING:
@@ -37,6 +37,7 @@ _PLAYED = {"choose": "best", "unproven": "least"}  # options of a shield where n
 _END_FLAGS = {"diverged": 2, "bad_actions": 4, "task_failed": 8}
 _STEP_FLAGS = {"contacts_left_out": 1, "unconverged": 16, "slowed": 32}
 
+_MOST = (1 << 31) - 1  # episodes, worlds and steps
 _BASELINES = ("zero", "hold", "random")
 Function = Callable[[FloatArray], Any]
 # What plays: a policy, a run or its folder, an agent, a baseline, a function of rows, a model with `predict`.
@@ -162,9 +163,7 @@ class Evaluation:
         the resamples' values are its ends (percentile bootstrap, Efron, Tibshirani: An Introduction to the Bootstrap, 1993,
         chapter 13): 10,000 resamples of a fixed seed. It is about this one policy: for an algorithm, use
         redman.stats.interval over several runs. NaN for less than two episodes."""
-        if stat not in _STATISTICS:
-            raise ArgumentError(f"interval: {stat!r} is none of {', '.join(_STATISTICS)}{nearest(str(stat), _STATISTICS)}")
-        rows_of, statistic = _STATISTICS[stat]
+        rows_of, statistic = one_of(stat, _STATISTICS, "stat")
         rows = rows_of(self)
         if len(rows) > 1:
             ends = stats.bootstrap([len(rows)], lambda drawn: statistic(rows[drawn[0]]), level)
@@ -419,8 +418,8 @@ def evaluate(player: Player, task: Optional[TaskName] = None, episodes: int = 10
     others are given: when nothing keeps the budgets in a world, the action that exceeds them least runs, and steps that cost
     are counted in violating_steps; with shield={"unproven": "error"} StateError is raised.
     """
-    if episodes < 1:
-        raise ArgumentError(f"episodes: {episodes} is less than 1")
+    episodes, num_envs = whole(episodes, "episodes", 1, _MOST), whole(num_envs, "num_envs", 1, _MOST)
+    options = as_dict(options)
     task = None if task is None else task_name(task)
     judged = _judged(player, task)
     origin = judged.origin
@@ -440,9 +439,9 @@ def evaluate(player: Player, task: Optional[TaskName] = None, episodes: int = 10
             magnitudes = origin.magnitudes if magnitudes is None else magnitudes
             if origin.own is not None:
                 functions = origin.own if functions is None else functions
-    given_options = {folded(key) for key in options or {}}
+    given_options = {folded(key) for key in options}
     laid = {key: value for key, value in own.items() if folded(key) not in given_options}
-    laid.update(options or {})
+    laid.update(options)
     if isinstance(judged.player, Policy) and center is not None:
         raise ArgumentError("center: it cannot be given with a policy of redman, whose actions need no center")
     repeat = judged.action_repeat if action_repeat is None else action_repeat
@@ -470,7 +469,7 @@ def evaluate(player: Player, task: Optional[TaskName] = None, episodes: int = 10
     player = judged.player
     if isinstance(player, Policy):
         held = player.info.action_repeat // pool.spec.action_repeat
-        if shield and shield_policy is None and not player.info.num_points:
+        if is_wanted(shield) and shield_policy is None and not player.info.num_points:
             shield_policy = player
     else:
         held = steps // pool.spec.action_repeat
@@ -543,12 +542,13 @@ def episode_of(policy: Policy, task: Optional[TaskName] = None, *, seed: int = 0
     own = None
     if origin is not None and folded(origin.task) == folded(name):
         laid, limits, own = dict(origin.options), origin.cost_limits, origin.own
-    given_options = {folded(key) for key in options or {}}
-    laid = singly({**{key: value for key, value in laid.items() if folded(key) not in given_options}, **(options or {})})
+    options, steps = as_dict(options), None if steps is None else whole(steps, "steps", 1, _MOST)
+    given_options = {folded(key) for key in options}
+    laid = singly({**{key: value for key, value in laid.items() if folded(key) not in given_options}, **options})
     with Pool(name, 1, seed, autoreset="off", options=laid) as pool:
         if own is not None:
             own.ready(pool)
-        if shield and shield_policy is None and not policy.info.num_points:
+        if is_wanted(shield) and shield_policy is None and not policy.info.num_points:
             shield_policy = policy
         guard = shield_of(pool, shield, shield_policy, policy.info.action_repeat, _PLAYED)
         pool.reset()

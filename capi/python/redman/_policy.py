@@ -16,15 +16,15 @@ from ._actor import Actor, on_task
 from ._episode import Episode, ending_of
 from ._error import ArgumentError, Error, FileError, FormatError, MissingFileError, NotFoundError, UsageError, VersionError
 from ._export import export
-from ._files import MOST_JSON, read_bytes, read_whole, write_whole
+from ._files import MOST_JSON, as_path, read_bytes, read_whole, write_whole
 from ._hold import decided, warn
 from ._imported import thing_at
-from ._library import Handle, check, filled, lib, policy_folders, text
+from ._library import Handle, check, filled, flag, instance, lib, policy_folders, raw, text, whole
 from ._names import Hinted, nearest
 from ._options import Options, Value
 from ._own_costs import Own
 from ._pool import Pool
-from ._rows import Array, FloatArray, clouds, given, wrong_shape
+from ._rows import Array, FloatArray, array_of, clouds, given, wrong_shape
 from ._tensors import Tensors
 
 
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from ._shield import Shielding
 
 _MAGIC = b"RDMPOLIC"
+_STARTS = _abi.Rows("uint8", ("rows",))
 
 
 @dataclass(frozen=True)
@@ -105,7 +106,7 @@ class Policy(Hinted):
     info: _abi.PolicyInfo
 
     def __init__(self, data: bytes, origin: Optional[Origin] = None) -> None:
-        self._bytes = bytes(data)
+        self._bytes = raw(data, "data")
         if self._bytes[:len(_MAGIC)] != _MAGIC:
             raise FormatError("policy: these bytes are not a policy file of redman (.rdm)")
         self.origin = origin
@@ -120,7 +121,7 @@ class Policy(Hinted):
         from the run, and the run's own task, robots and objects are loaded from the folder."""
         if isinstance(source, (bytes, bytearray, memoryview)):
             return cls(bytes(source))
-        path = Path(source)
+        path = as_path(source, "source")
         if path.is_dir() and not (path / "policy.rdm").exists():
             raise MissingFileError(f"policy {path}: no run folder: there is no policy.rdm in it")
         data = read_whole(path / "policy.rdm" if path.is_dir() else path, "policy")
@@ -162,7 +163,8 @@ class Policy(Hinted):
     def start(self, rows: Optional[int] = None) -> FloatArray:
         """What a policy with a memory remembers before the first decision of an episode: zeros [rows][state_dim], or
         [state_dim] for one world."""
-        return np.zeros(self.info.state_dim if rows is None else (rows, self.info.state_dim), np.float32)
+        shape = () if rows is None else (whole(rows, "rows", 0, (1 << 31) - 1),)
+        return np.zeros((*shape, self.info.state_dim), np.float32)
 
     @property
     def groups(self) -> tuple[str, ...]:
@@ -203,10 +205,10 @@ class Policy(Hinted):
         if remembers and state is None:
             raise ArgumentError("state: it is missing, and this policy has a memory: call action, state = policy.act(obs, state), beginning "
                                 "with state = policy.start(rows), or use an actor")
-        if not remembers and state is not None and np.size(state):
+        if not remembers and state is not None and array_of(state, "state").size:
             raise ArgumentError("state: it cannot be given, since this policy has no memory")
         rows_of = _abi.FUNCTIONS["rdm_policy_act"].rows
-        observed = np.asarray(obs)
+        observed = array_of(obs, "obs")
         if observed.ndim not in (1, 2) or observed.shape[-1] != self.info.obs_dim:
             raise wrong_shape("obs", observed.shape, f"(rows, {self.info.obs_dim})")
         lengths = {"rows": observed.shape[0] if observed.ndim == 2 else 1, "obs_dim": self.info.obs_dim,
@@ -246,7 +248,7 @@ class Policy(Hinted):
 
     def _state(self, state: Any, rows: int) -> FloatArray:
         """A copy of a state, which the library changes."""
-        kept: FloatArray = np.array(state, np.float32, order="C")
+        kept: FloatArray = np.array(array_of(state, "state", np.float32), order="C")
         if kept.size != rows * self.info.state_dim or kept.shape[-1] != self.info.state_dim:
             raise wrong_shape("state", kept.shape, (rows, self.info.state_dim))
         return kept.reshape(rows, self.info.state_dim)
@@ -255,7 +257,7 @@ class Policy(Hinted):
         """(action, mean), both [n][action_dim] for rows [n][obs_dim], not clipped, as an agent samples: mean + std noise,
         with standard normal noise [n][action_dim]; None: from numpy's global generator. Agent.put takes such actions."""
         rows_of = _abi.FUNCTIONS["rdm_policy_sample"].rows
-        observed = np.atleast_2d(np.asarray(obs))
+        observed = np.atleast_2d(array_of(obs, "obs"))
         if observed.ndim != 2 or observed.shape[1] != self.info.obs_dim:
             raise wrong_shape("obs", np.shape(obs), f"(rows, {self.info.obs_dim})")
         lengths = {"rows": len(observed), "obs_dim": self.info.obs_dim, "action_dim": self.info.action_dim}
@@ -274,7 +276,7 @@ class Policy(Hinted):
 
         About 1 is the most that training saw, 2 is far from it. UnsupportedError where info.novelty is 0.
         """
-        observed = np.asarray(obs)
+        observed = array_of(obs, "obs")
         if observed.ndim not in (1, 2) or observed.shape[-1] != self.info.obs_dim:
             raise wrong_shape("obs", observed.shape, f"(rows, {self.info.obs_dim})")
         rows = observed.shape[0] if observed.ndim == 2 else 1
@@ -304,8 +306,10 @@ class Policy(Hinted):
         episode begins. deterministic=False samples with numpy's global generator. In an environment whose step has several
         control steps, or that has a center, use policy.actor(env).predict.
         """
-        observed = np.asarray(observation)
-        rows = observed.reshape(-1, observed.shape[-1]) if observed.ndim in (1, 2) else observed
+        observed = array_of(observation, "observation")
+        if observed.ndim not in (1, 2) or observed.shape[-1] != self.info.obs_dim:
+            raise wrong_shape("observation", observed.shape, f"(rows, {self.info.obs_dim})")
+        rows = observed.reshape(-1, observed.shape[-1])
         shape = (len(rows), self.info.action_dim)
         if state is None:
             if episode_start is None and self.info.action_repeat > 1:
@@ -314,17 +318,20 @@ class Policy(Hinted):
                 shape, np.float32), np.ones(len(rows), bool)
             memory = self.start(len(rows))
         else:
-            left, action, noise, fresh, *remembered = (part.copy() for part in state)
+            try:
+                left, action, noise, fresh, *remembered = (part.copy() for part in state)
+            except (TypeError, ValueError, AttributeError):
+                raise UsageError(f"state: it must be what the last predict returned, or None, not {state!r}") from None
             memory = remembered[0] if remembered else self.start(len(rows))
             if action.shape != shape:
                 raise ArgumentError(f"state: it has {len(action)} rows, but obs has {len(rows)}")
         if episode_start is not None:
-            begun = np.broadcast_to(np.asarray(episode_start, bool), left.shape)
+            begun = given(array_of(episode_start, "episode_start", bool), _STARTS, {"rows": len(rows)}, "episode_start", spread=True).view(bool)
             left[begun], fresh[begun], memory[begun] = 0, True, 0
         due = left == 0
         if due.any():
             drawn = None
-            if not deterministic:
+            if not flag(deterministic, "deterministic"):
                 rho = self.info.noise_correlation
                 drawn = np.random.standard_normal(shape).astype(np.float32)
                 drawn = np.where(fresh[:, None], drawn, np.float32(rho) * noise + np.float32(np.sqrt(1 - rho * rho)) * drawn)
@@ -358,8 +365,9 @@ class Policy(Hinted):
 
     def check(self, pool: Pool) -> None:
         """VersionError, which says what differs, unless the policy fits the pool's task and options."""
+        spec = instance(pool, Pool, "pool", "; an environment has one, env.pool")._spec
         with on_task(pool):
-            check(lib.rdm_policy_check(self._open(), pool._spec))
+            check(lib.rdm_policy_check(self._open(), spec))
 
     @property
     def columns(self) -> Array:

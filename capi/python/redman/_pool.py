@@ -16,9 +16,10 @@ from ._abi import Autoreset, BaselineKind
 from ._error import ArgumentError, Error, NotFoundError, StateError, UsageError
 from ._html import image, number, table
 from ._hold import LAST, Watch
-from ._library import (Handle, assign, check, encoded, failure, filled, int32, lib, raise_kept, raised, sized, text)
-from ._names import Hinted, keywords, nearest
-from ._options import Options, Told, Value, read_settings, settings_of
+from ._library import (Handle, assign, check, encoded, failure, filled, instance, int32, lib, raise_kept, raised, raw, real, sized,
+                       text, whole)
+from ._names import Hinted, keywords, nearest, one_of
+from ._options import Options, Told, Value, as_dict, read_settings, settings_of
 from ._paths import by_name, named_options
 from ._returned import Returned
 from ._rows import Array, Borrowed, DoubleArray, FloatArray, address, given, made, shape_of
@@ -55,7 +56,7 @@ def _struct(own: Mapping[str, Any]) -> _abi.rdm_pool_config:
     """The config struct from plain values."""
     config = sized(_abi.rdm_pool_config)
     check(lib.rdm_pool_config_init(byref(config), ctypes.sizeof(config)))
-    config.task = encoded(_discovery.task_name(own["task"]))
+    config.task = encoded(_discovery.task_name(own["task"]), "task")
     assign(config, {"num_envs": own["num_envs"], "seed": own["seed"], "num_threads": own["threads"]})
     config.autoreset = _autoreset(own["autoreset"])
     config.settings = settings_of(named_options(own["options"]), _kinds(own["task"]) if own["options"] else {})
@@ -71,7 +72,7 @@ def memory(task: _discovery.TaskName, num_envs: int = 1, options: Optional[Optio
     """Bytes that a pool of num_envs worlds of a task with these options would take: by the library, exact, and by the physics engine,
     an estimate. No world is made."""
     config = _struct({"task": _discovery.task_name(task), "num_envs": num_envs, "seed": 0, "threads": 0, "autoreset": "same_step",
-                      "options": dict(options or {})})
+                      "options": as_dict(options)})
     ours, engines = c_size_t(), c_size_t()
     check(lib.rdm_pool_config_memory(byref(config), byref(ours), byref(engines)))
     return ours.value, engines.value
@@ -80,7 +81,7 @@ def memory(task: _discovery.TaskName, num_envs: int = 1, options: Optional[Optio
 def spec(task: _discovery.TaskName, options: Optional[Options] = None) -> _abi.Spec:
     """The sizes that a pool with these options would have; makes the task for a moment and no world."""
     config = _struct({"task": _discovery.task_name(task), "num_envs": 1, "seed": 0, "threads": 0, "autoreset": "same_step",
-                      "options": dict(options or {})})
+                      "options": as_dict(options)})
     return _abi.Spec(filled(_abi.rdm_spec, lib.rdm_pool_config_spec, byref(config)))
 
 
@@ -89,8 +90,8 @@ def check_task(task: _discovery.TaskName, options: Optional[Options] = None) -> 
     rows within their fields and bounds, costs of 0 or more. ArgumentError names function, step and entry of the first broken
     promise. Takes seconds; for .task files and tasks of your own."""
     name = _discovery.task_name(task)
-    settings = settings_of(named_options(dict(options or {})), _kinds(name) if options else {})
-    check(lib.rdm_task_check(encoded(name), settings, _abi.rdm_stop(0), None, None, 0))
+    settings = settings_of(named_options(as_dict(options)), _kinds(name) if options else {})
+    check(lib.rdm_task_check(encoded(name, "task"), settings, _abi.rdm_stop(0), None, None, 0))
 
 
 class Guard(_abi.Guard):
@@ -184,7 +185,7 @@ class Pool(Hinted):
         self._lock = threading.RLock()
         self._config: dict[str, Any] = {
             "task": _discovery.task_kept(task), "num_envs": num_envs, "seed": seed, "threads": threads,
-            "autoreset": _AUTORESET_NAMES[_autoreset(autoreset)], "options": by_name(options or {}),
+            "autoreset": _AUTORESET_NAMES[_autoreset(autoreset)], "options": by_name(as_dict(options)),
             "ranks": ranks}
         config = _struct(self._config)
         self._handle: Optional[Handle] = Handle(lib.rdm_pool_create, lib.rdm_pool_destroy, byref(config))
@@ -209,6 +210,8 @@ class Pool(Hinted):
         self._begun = False  # whether an episode was begun by reset, set_state or copy
         self._starts: tuple[Optional[Recording], float] = (None, 0.0)
         if ranks is not None:
+            from ._ranks import Ranks
+            instance(ranks, Ranks, "ranks")
             check(lib.rdm_pool_set_rank(self._p, ranks.rank, ranks.ranks))
 
     # ---- rows -------------------------------------------------------------------------------------------------
@@ -383,10 +386,9 @@ class Pool(Hinted):
 
     def baseline(self, kind: str = "hold") -> FloatArray:
         """Fills pool.action with the actions of a simple baseline, "zero", "hold" or "random", and returns it."""
-        if kind not in _BASELINE:
-            raise ArgumentError(f"baseline: {kind!r} is none of {', '.join(_BASELINE)}")
+        chosen = one_of(kind, _BASELINE, "kind")
         with self._lock:
-            self._check(lib.rdm_pool_baseline(self._p, _BASELINE[kind]))
+            self._check(lib.rdm_pool_baseline(self._p, chosen))
         return self._action
 
     # ---- state ------------------------------------------------------------------------------------------------
@@ -402,16 +404,19 @@ class Pool(Hinted):
 
     def set_state(self, state: bytes, env: int = -1) -> None:
         """Continues from state(), with the same bytes. Rewrites obs and clears the other rows of that world."""
+        data = raw(state, "state")
         with self._lock:
-            self._check(lib.rdm_pool_read_state(self._p, int32(env, "env"), bytes(state), len(state)))
+            self._check(lib.rdm_pool_read_state(self._p, int32(env, "env"), data, len(data)))
             self._begun = True
 
     def set_starts(self, recording: Optional[Recording], share: float) -> None:
         """From the next reset on, worlds begin an episode with probability share (0 to 1) at a state of the recording, which
         has states if it was made from a pool; None: keeps the states of the last call, with another share. Such an episode
         has only the steps that were left of the recorded one. All other random numbers are the same as without."""
-        if recording is not None and not hasattr(recording, "_handle"):
-            raise UsageError(f"recording: it must be a redman.Recording or None, not {recording!r}")
+        from ._recording import Recording
+        if recording is not None:
+            instance(recording, Recording, "recording")
+        share = real(share, "share")
         with self._lock:
             self._check(lib.rdm_pool_set_starts(self._open(), None if recording is None else recording._handle.value, share))
             self._starts = (self._starts[0] if recording is None else recording, share)
@@ -442,19 +447,15 @@ class Pool(Hinted):
 
         num_envs: worlds side by side in one scene, from env on, with the camera moved back until all are in sight; shape i of
         world env + k is k * len(shapes) + i. look: "fine", for people, or "plain", as observations look, in half the time."""
-        if what not in _PICTURE:
-            raise ArgumentError(f"what: {what!r} is none of {', '.join(_PICTURE)}")
-        if look not in _LOOKS:
-            raise ArgumentError(f"look: {look!r} is none of {', '.join(_LOOKS)}")
         if camera is None:
             camera = next(iter(self.task.cameras), "")
-        dtype, tail = _PICTURE[what]
+        dtype, tail = one_of(what, _PICTURE, "what")
         picture = sized(_abi.rdm_picture)
         picture.env, picture.num_envs = int32(env, "env"), int32(num_envs, "num_envs")
         picture.width, picture.height = int32(width, "width"), int32(height, "height")
-        picture.look, picture.camera = _LOOKS[look], encoded(camera)
-        fits = 1 <= width <= 8192 and 1 <= height <= 8192  # if not, the call says so
-        out = np.empty((height, width, *tail) if fits else 0, dtype)
+        picture.look, picture.camera = one_of(look, _LOOKS, "look"), encoded(camera, "camera")
+        fits = 1 <= picture.width <= 8192 and 1 <= picture.height <= 8192  # if not, the call says so
+        out = np.empty((picture.height, picture.width, *tail) if fits else 0, dtype)
         setattr(picture, what, out.ctypes.data)
         with self._lock:
             self._check(lib.rdm_pool_draw(self._p, byref(picture)))
@@ -493,7 +494,7 @@ class Pool(Hinted):
         It records step() and reset() of this object, not Agent.rollout. With autoreset "same_step" the last frame is missing, as
         the step that ends an episode begins the next one."""
         from ._episode import record
-        return record(self, int(np.arange(self.num_envs)[env]), actor)
+        return record(self, range(self.num_envs)[whole(env, "env", -self.num_envs, self.num_envs - 1)], actor)
 
     @property
     def shapes(self) -> list[_discovery.Shape]:
@@ -569,7 +570,7 @@ class Pool(Hinted):
         What is left of the budget changes by as much, and obs shows both. The next episode draws its limit, or has that of
         option limit."""
         with self._lock:
-            self._check(lib.rdm_pool_set_limit(self._p, int32(env, "env"), float(limit)))
+            self._check(lib.rdm_pool_set_limit(self._p, int32(env, "env"), real(limit, "limit")))
 
     def raycast(self, env: int, origin: Sequence[float], direction: Sequence[float],
                 range: float = math.inf) -> Optional[_abi.RayHit]:
@@ -579,7 +580,7 @@ class Pool(Hinted):
         hit = sized(_abi.rdm_ray_hit)
         with self._lock:
             self._check(lib.rdm_pool_raycast(self._p, int32(env, "env"), *(row.ctypes.data for row in rows),
-                                             range, byref(hit)))
+                                             real(range, "range"), byref(hit)))
         return None if hit.shape < 0 else _abi.RayHit(hit)
 
     def contacts(self, env: int = 0) -> Array:
@@ -742,7 +743,7 @@ class Pool(Hinted):
 
     def copy(self, src: int, dst: int, other: Optional[Pool] = None) -> None:
         """Puts world dst into the state of world src of this pool, or of another one of the same task and options."""
-        source = self if other is None else other
+        source = self if other is None else instance(other, Pool, "other")
         first, second = sorted((self, source), key=id)
         with first._lock, second._lock:
             self._check(lib.rdm_pool_copy(self._p, int32(dst, "dst"), source._open(), int32(src, "src")))

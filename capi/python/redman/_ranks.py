@@ -7,7 +7,7 @@ from typing import Any, Callable, Optional, Sequence
 from . import _abi
 from ._callbacks import c_function
 from ._error import ArgumentError, UsageError
-from ._library import assign, sized
+from ._library import assign, int32, sized
 from ._names import Hinted
 
 Gather = Callable[[bytes], Sequence[bytes]]
@@ -35,8 +35,12 @@ class Ranks(Hinted):
     ranks: int
 
     def __init__(self, rank: int, ranks: int, gather: Optional[Gather] = None, swap: Optional[Swap] = None) -> None:
+        rank, ranks = int32(rank, "rank"), int32(ranks, "ranks")
         if not 0 <= rank < ranks:
             raise ArgumentError(f"rank: {rank} is not between 0 and {ranks - 1}")
+        for name, call in (("gather", gather), ("swap", swap)):
+            if call is not None and not callable(call):
+                raise UsageError(f"{name}: it must be a function, not {call!r}")
         if gather is None and ranks > 1:
             raise UsageError("gather: it is missing: give the function that exchanges the messages of several ranks, such as "
                              "comm.allgather of mpi4py")

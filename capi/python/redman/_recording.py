@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any, Iterator, Mapping, Optional, Union
 import numpy as np
 
 from . import _abi
-from ._error import ArgumentError, UsageError
+from ._error import ArgumentError
 from ._files import must_exist
-from ._library import Handle, assign, check, encoded, filled, lib, sized
+from ._library import Handle, assign, check, encoded, filled, flag, instance, lib, sized
 from ._limits import CostLimits, each_cost
 from ._names import Hinted, keywords
 from ._pool import Pool
-from ._rows import Array, FloatArray, address, given, shape_of
+from ._rows import Array, FloatArray, address, array_of, given, shape_of
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -65,17 +65,16 @@ class Recording(Hinted):
         config = sized(_abi.rdm_recording_config)
         check(lib.rdm_recording_config_init(byref(config), ctypes.sizeof(config)))
         if pool is not None:
-            if not isinstance(pool, Pool):
-                raise UsageError(f"pool: it must be a redman.Pool, not {pool!r}; redman.Recording.load(path) reads a file")
+            instance(pool, Pool, "pool", "; redman.Recording.load(path) reads a file")
             if obs_dim is not None or action_dim is not None:
                 raise ArgumentError("recording: give either a pool, or obs_dim and action_dim")
             check(lib.rdm_recording_config_for_pool(byref(config), pool._open()))
         else:
             if obs_dim is None or action_dim is None:
                 raise ArgumentError("recording: give a pool, or obs_dim and action_dim")
-            config.task = encoded(task)
+            config.task = encoded(task, "task")
             assign(config, {"obs_dim": obs_dim, "action_dim": action_dim, "cost_dim": cost_dim, "layout_hash": layout_hash,
-                            "state_bytes": state_bytes, "num_points": num_points, "point_color": int(point_color)})
+                            "state_bytes": state_bytes, "num_points": num_points, "point_color": flag(point_color, "point_color")})
         assign(config, {"capacity": capacity, "state_stride": state_stride})
         self._stride = state_stride
         self._own(Handle(lib.rdm_recording_create, lib.rdm_recording_destroy, byref(config)))
@@ -92,13 +91,13 @@ class Recording(Hinted):
         must_exist(path, "recording")
         out = cls.__new__(cls)
         out._stride = 8
-        out._own(Handle(lib.rdm_recording_read_file, lib.rdm_recording_destroy, encoded(path)))
+        out._own(Handle(lib.rdm_recording_read_file, lib.rdm_recording_destroy, encoded(path, "path")))
         return out
 
     def save(self, path: Union[str, os.PathLike[str]]) -> None:
         """Writes an .npz file, entirely or not at all."""
         with self._lock:
-            check(lib.rdm_recording_write_file(self._handle.value, encoded(path)))
+            check(lib.rdm_recording_write_file(self._handle.value, encoded(path, "path")))
 
     # ---- adding rows ------------------------------------------------------------------------------------------
 
@@ -118,14 +117,14 @@ class Recording(Hinted):
     def begin_step(self, pool: Pool, label: Any = None, mask: Any = None) -> None:
         """The first half of step: before pool.step."""
         rows = _abi.FUNCTIONS["rdm_recording_begin_step"].rows
-        meant = None if label is None else given(label, rows["label"], pool._lengths, "label")
-        chosen = pool._mask(mask)
+        meant = None if label is None else given(label, rows["label"], instance(pool, Pool, "pool")._lengths, "label")
+        chosen = instance(pool, Pool, "pool")._mask(mask)
         with pool._lock, self._lock:
             check(lib.rdm_recording_begin_step(self._handle.value, pool._open(), address(meant), address(chosen)))
 
     def end_step(self, pool: Pool, mask: Any = None) -> None:
         """The second half of step: after pool.step."""
-        chosen = pool._mask(mask)
+        chosen = instance(pool, Pool, "pool")._mask(mask)
         with pool._lock, self._lock:
             check(lib.rdm_recording_end_step(self._handle.value, pool._open(), address(chosen)))
 
@@ -139,8 +138,7 @@ class Recording(Hinted):
         points [n][num_points][3] are whole mm. state [m][state_bytes] are those before the rows state_row [m].
         """
         if other is not None:
-            if not isinstance(other, Recording):
-                raise UsageError(f"append: give a redman.Recording, or obs=..., action=..., not {other!r}")
+            instance(other, Recording, "other", "; arrays are append(obs=..., action=...)")
             first, second = sorted((self, other), key=id)
             with first._lock, second._lock:
                 check(lib.rdm_recording_append_all(self._handle.value, other._handle.value))
@@ -150,7 +148,7 @@ class Recording(Hinted):
         said = {"obs": obs, "action": action, "label": label, "reward": reward, "cost": cost, "terminated": terminated,
                 "truncated": truncated, "success": success, "episode": episode, "points": points,
                 "point_class": point_class, "point_color": point_color, "state_row": state_row, "state": state}
-        lengths = self._lengths(len(np.atleast_2d(obs)), 0 if state_row is None else len(state_row))
+        lengths = self._lengths(len(np.atleast_2d(array_of(obs, "obs"))), 0 if state_row is None else array_of(state_row, "state_row").size)
         table = _abi.ROWS["rdm_recording_rows"]
         kept = {name: given(value, table[name], lengths, name) for name, value in said.items() if value is not None}
         struct = sized(_abi.rdm_recording_rows)
@@ -169,7 +167,7 @@ class Recording(Hinted):
         rows = None if limits is None else np.array(limits, np.float64)
         dropped = c_int64()
         with self._lock:
-            check(lib.rdm_recording_filter(self._handle.value, int(success), address(rows), byref(dropped)))
+            check(lib.rdm_recording_filter(self._handle.value, flag(success, "success"), address(rows), byref(dropped)))
         return dropped.value
 
     def clear(self) -> None:

@@ -14,7 +14,7 @@ from ._definition import fill, plain, pose_of
 from ._error import UsageError
 from ._files import write_whole
 from ._import_abi import ImportNote, NoteKind
-from ._library import check, encoded, filled, lib, sized
+from ._library import check, encoded, filled, flag, lib, real, sized
 from ._paths import named
 from ._rows import Array, DoubleArray, given
 
@@ -135,7 +135,8 @@ class Robot(_abi.Robot):
         """This arm with a hand on its flange, as a robot of its own: the hand is rotated by yaw (rad) about the flange's z
         and moved out by adapter (m); left: its mirror image."""
         out = c_int32()
-        check(lib.rdm_robot_create_mounted(byref(out), encoded(name), self.number, robot(hand).number, yaw, adapter, int(left)))
+        check(lib.rdm_robot_create_mounted(byref(out), encoded(name, "name"), self.number, robot(hand).number,
+                                            real(yaw, "yaw"), real(adapter, "adapter"), flag(left, "left")))
         added.add(out.value)
         return robot_at(out.value)
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from . import _abi
 from ._abi import Rows
-from ._error import ArgumentError
+from ._error import ArgumentError, UsageError
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -46,13 +46,21 @@ def made(table: Mapping[str, Rows], lengths: Mapping[str, int]) -> dict[str, Arr
     return out
 
 
+def array_of(value: Any, name: str, dtype: Any = None) -> Array:
+    """An argument as an array, of its own type unless another is wanted."""
+    try:
+        return np.asarray(value, dtype)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise UsageError(f"{name}: it must be an array of numbers: {error}") from None
+
+
 def given(value: Any, rows: Rows, lengths: Mapping[str, int], name: str, spread: bool = False) -> Array:
     """The caller's array as the library reads it: no copy where type, shape and order are already right.
 
     Lengths of 1 may be left out: [n] for [n][1], a number for [1]. With spread, values are repeated along missing axes.
     """
     shape = shape_of(rows, lengths)
-    array = _cast(np.asarray(value), np.dtype(rows.dtype), name)
+    array = _cast(array_of(value, name), np.dtype(rows.dtype), name)
     if array.shape != shape:
         if [length for length in array.shape if length != 1] == [length for length in shape if length != 1]:
             array = array.reshape(shape)
@@ -107,7 +115,7 @@ class Borrowed:
 def clouds(points: Any, point_class: Any, point_color: Any, rows: int) -> tuple[_abi.rdm_points, tuple[Any, ...]]:
     """The struct for clouds points [rows][n][3], point_class [rows][n], point_color [rows][n][3] or None, and the arrays
     that it borrows."""
-    array = np.asarray(points)
+    array = array_of(points, "points")
     if array.ndim == 2 and rows == 1:
         array = array[None]
     if array.ndim != 3 or array.shape[0] != rows or array.shape[2] != 3:

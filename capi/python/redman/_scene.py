@@ -9,9 +9,10 @@ from . import _abi
 from ._abi import ScenePart
 from ._definition import fill, pose_of
 from ._error import ArgumentError
-from ._library import check, encoded, lib, sized, text
-from ._names import Hinted
+from ._library import check, encoded, int32, lib, real, sized, text
+from ._names import Hinted, one_of
 from ._options import Told
+from ._rows import given
 
 if TYPE_CHECKING:
     from ._robot import RobotName
@@ -44,7 +45,7 @@ class SceneBuilder(Hinted):
         if key in self.options:
             return self.options[key]
         value = c_double()
-        check(lib.rdm_scene_get_number(self._scene(), encoded(key), byref(value)))
+        check(lib.rdm_scene_get_number(self._scene(), encoded(key, "key"), byref(value)))
         return value.value
 
     # --- bodies
@@ -79,8 +80,8 @@ class SceneBuilder(Hinted):
         from ._object import objects
         from ._paths import named
         out, at, called = c_int32(), pose_of(pose), named("object", object_name)
-        check(lib.rdm_scene_add_object(self._scene(), objects()[called].number, encoded(name or called),
-                                       byref(at), scale, byref(out)))
+        check(lib.rdm_scene_add_object(self._scene(), objects()[called].number, encoded(name or called, "name"),
+                                       byref(at), real(scale, "scale"), byref(out)))
         return out.value
 
     # --- what stands still, robots
@@ -120,13 +121,13 @@ class SceneBuilder(Hinted):
 
     def material(self, name: str, **friction: float) -> None:
         """A new material; friction: its coefficients with existing materials, as in material("rubber", default=0.9)."""
-        check(lib.rdm_scene_add_material(self._scene(), encoded(name)))
+        check(lib.rdm_scene_add_material(self._scene(), encoded(name, "name")))
         for other, mu in friction.items():
             self.friction(name, other, mu)
 
     def friction(self, a: str, b: str, mu: Optional[float]) -> None:
         """The coefficient of friction between two materials, 1 unless set; None: they pass through each other."""
-        check(lib.rdm_scene_set_friction(self._scene(), encoded(a), encoded(b), -1.0 if mu is None else mu))
+        check(lib.rdm_scene_set_friction(self._scene(), encoded(a, "a"), encoded(b, "b"), -1.0 if mu is None else real(mu, "mu")))
 
     def contact_law(self, a: str, b: str, **law: float) -> None:
         """Contacts of two materials, apart from their friction: restitution, torsional, rolling, time_constant,
@@ -134,11 +135,11 @@ class SceneBuilder(Hinted):
         row = sized(_abi.rdm_contact_law)
         check(lib.rdm_contact_law_init(byref(row), ctypes.sizeof(row)))
         fill(row, law, "contact_law")
-        check(lib.rdm_scene_set_contact_law(self._scene(), encoded(a), encoded(b), byref(row)))
+        check(lib.rdm_scene_set_contact_law(self._scene(), encoded(a, "a"), encoded(b, "b"), byref(row)))
 
     def gravity(self, g: Sequence[float]) -> None:
         """Gravity [3], m/s2, instead of the option's."""
-        check(lib.rdm_scene_set_gravity(self._scene(), (c_double * 3)(*g)))
+        check(lib.rdm_scene_set_gravity(self._scene(), (c_double * 3)(*given(g, _abi.FUNCTIONS["rdm_scene_set_gravity"].rows["gravity"], {}, "g"))))
 
     def adjustable(self) -> None:
         """Allows Worlds.set_factors: masses, gains and friction of each world's own."""
@@ -152,23 +153,21 @@ class SceneBuilder(Hinted):
 
     def field(self, name: str, count: int) -> None:
         """Sets another count of entries for a field of the observation in this pool."""
-        check(lib.rdm_scene_set_field(self._scene(), encoded(name), count))
+        check(lib.rdm_scene_set_field(self._scene(), encoded(name, "name"), int32(count, "count")))
 
     # --- what is there
 
     def find(self, part: str, name: str) -> int:
         """The number of a "robot", "body", "link", "joint", "shape", "sensor" or "material" by its name."""
-        if part not in _PARTS:
-            raise ArgumentError(f"find: {part!r} is none of {', '.join(_PARTS)}")
         out = c_int32()
-        check(lib.rdm_scene_find(self._scene(), _PARTS[part], encoded(name), byref(out)))
+        check(lib.rdm_scene_find(self._scene(), one_of(part, _PARTS, "part"), encoded(name, "name"), byref(out)))
         return out.value
 
     def touch(self, a: str, b: str) -> int:
         """Returns a number for Worlds.touching and touch_force: all contacts of shapes of a with those of b; each is the
         name of a shape, body or robot, or a pattern of such names with * and ?."""
         out = c_int32()
-        check(lib.rdm_scene_add_touch(self._scene(), encoded(a), encoded(b), byref(out)))
+        check(lib.rdm_scene_add_touch(self._scene(), encoded(a, "a"), encoded(b, "b"), byref(out)))
         return out.value
 
     def joints(self) -> dict[str, int]:

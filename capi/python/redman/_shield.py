@@ -13,13 +13,13 @@ from . import _abi, _discovery
 from ._abi import ShieldKind
 from ._actor import on_task
 from ._error import ArgumentError, UsageError
-from ._library import Handle, assign, bytes_of, check, filled, int32, lib, sized
+from ._library import Handle, assign, bytes_of, check, filled, instance, int32, lib, raw, real, sized
 from ._limits import CostLimits, each_cost
 from ._names import Hinted, folded, keywords
-from ._options import Options, Value, read_settings, settings_of
+from ._options import Options, Value, as_dict, read_settings, settings_of
 from ._policy import Backup, Policy, policy_of
 from ._pool import Pool
-from ._rows import Array, FloatArray, address, given
+from ._rows import Array, FloatArray, address, array_of, given
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -87,10 +87,9 @@ class Shield(Hinted):
               options=True)
     def __init__(self, pool: Pool, policy: Optional[Backup] = None, *, seed: int = 0, threads: int = 0,
                  steps: Optional[int] = None, budgets: CostLimits = None, options: Optional[Options] = None) -> None:
-        if not isinstance(pool, Pool):
-            raise UsageError(f"pool: it must be a redman.Pool, not {pool!r}; an environment takes shield=True")
+        instance(pool, Pool, "pool", "; an environment takes shield=True")
         usual = [0.0, *[-1.0] * (pool.cost_dim - 1)][:pool.cost_dim]
-        own = {"seed": seed, "num_threads": threads, "steps": 0 if steps is None else steps, "options": dict(options or {}),
+        own = {"seed": seed, "num_threads": threads, "steps": 0 if steps is None else steps, "options": as_dict(options),
                "budgets": each_cost(budgets, usual, list(pool.costs), "budgets")}
         self._make(pool, own, None if policy is None else policy_of(policy, pool.task))
 
@@ -125,16 +124,16 @@ class Shield(Hinted):
     def add_guard(self, normal: Any, bound: float) -> int:
         """Adds a guard for all worlds: normal [action_dim] . action <= bound. Returns its number for set_guard. Plans are
         forgotten."""
-        row = self._normal("rdm_shield_add_guard", normal)
+        row, bound = self._normal("rdm_shield_add_guard", normal), real(bound, "bound")
         with self._lock:
             check(lib.rdm_shield_add_guard(self._handle.value, row.ctypes.data, bound))
-            self._guards.append((row.copy(), float(bound)))
+            self._guards.append((row.copy(), bound))
             return len(self._guards) - 1
 
     def set_guard(self, env: int, i: int, normal: Any, bound: float) -> None:
         """Sets guard i of those that were added, for one world from now on, such as a model predicts it for the world's
         state. The world's plan is forgotten if the guard changed."""
-        row = self._normal("rdm_shield_set_guard", normal)
+        row, bound = self._normal("rdm_shield_set_guard", normal), real(bound, "bound")
         with self._lock:
             check(lib.rdm_shield_set_guard(self._handle.value, int32(env, "env"), int32(i, "i"), row.ctypes.data, bound))
 
@@ -159,8 +158,9 @@ class Shield(Hinted):
         """act() on pool.action where mask is true, except for worlds whose action is not finite, which ends their episode as
         without a shield. Returns the kinds of this decision [num_envs], OWN where nothing was checked."""
         asked: Array = np.isfinite(self.pool.action).all(axis=1)
-        if mask is not None:
-            asked &= mask
+        chosen = self._mask(mask)
+        if chosen is not None:
+            asked &= chosen.view(np.bool_)
         if asked.any():
             self.act(mask=asked)
         return self.kinds * asked
@@ -199,7 +199,8 @@ class Shield(Hinted):
         """Makes plan [decisions][action_dim], such as a demonstration or a planner's plan, the plan of one world, which
         follows it when nothing new keeps the budgets. StateError if it exceeds a budget, with the time; the previous plan
         stays then."""
-        lengths = {**self._lengths, "decisions": np.size(plan) // self.pool.action_dim}
+        plan = array_of(plan, "plan")
+        lengths = {**self._lengths, "decisions": plan.size // self.pool.action_dim}
         rows = given(plan, _abi.FUNCTIONS["rdm_shield_set_plan"].rows["plan"], lengths, "plan")
         with self.pool._lock, self._lock:
             check(lib.rdm_shield_set_plan(self._handle.value, self.pool._open(), int32(env, "env"), rows.ctypes.data, len(rows)))
@@ -249,8 +250,9 @@ class Shield(Hinted):
 
     def set_state(self, state: bytes) -> None:
         """Continues from state() with the same bytes, if the pool is set to its state of that moment too."""
+        data = raw(state, "state")
         with self._lock:
-            check(lib.rdm_shield_read_state(self._handle.value, bytes(state), len(state)))
+            check(lib.rdm_shield_read_state(self._handle.value, data, len(data)))
 
     def _mask(self, mask: Any) -> Optional[Array]:
         return None if mask is None else given(mask, self._rows["mask"], self._lengths, "mask", spread=True)
@@ -279,7 +281,8 @@ class Shield(Hinted):
 def project(normals: Any, bounds: Any, action: Any) -> FloatArray:
     """The point in [-1, 1] nearest to action [dim] that satisfies normals [count][dim] . point <= bounds [count]."""
     rows = _abi.FUNCTIONS["rdm_project"].rows
-    count, dim = np.size(bounds), np.size(action)
+    bounds, action = array_of(bounds, "bounds"), array_of(action, "action")
+    count, dim = bounds.size, action.size
     lengths = {"count": count, "dim": dim}
     arrays = [given(value, rows[name], lengths, name)
               for name, value in (("normals", normals), ("bounds", bounds), ("action", action))]
@@ -288,16 +291,21 @@ def project(normals: Any, bounds: Any, action: Any) -> FloatArray:
     return out
 
 
+def is_wanted(shield: Shielding) -> bool:
+    """Whether a shield= argument asks for a shield, of no options too."""
+    return shield is not None and shield is not False
+
+
 def shield_of(pool: Pool, wanted: Shielding, policy: Optional[Backup], steps: int = 1,
               played: Optional[Mapping[str, Value]] = None) -> Optional[Shield]:
     """The shield for the shield= argument of an environment or, with the options `played` unless others are given, of an evaluation."""
-    if wanted is None or wanted is False:
+    if not is_wanted(wanted):
         if policy is not None:
             raise ArgumentError("shield_policy: it is the backup of a shield, and there is none: give shield=True too")
         return None
     if wanted is not True and not isinstance(wanted, Mapping):
         raise UsageError(f"shield: it must be True, or a dict of options, budgets, seed and threads, not {wanted!r}")
-    options: dict[str, Value] = {} if wanted is True else dict(wanted)
+    options: dict[str, Value] = {} if wanted is True else as_dict(wanted, "shield")
     said = {folded(key) for key in options}
     options.update((key, value) for key, value in (played or {}).items() if key not in said)
     own: dict[str, Any] = {name: options.pop(name) for name in ("budgets", "seed", "threads") if name in options}

@@ -9,11 +9,12 @@ from typing import Any, Callable, Optional
 import numpy as np
 
 from . import _abi
-from ._error import ArgumentError, UsageError
-from ._library import assign, check, lib, sized
+from ._library import assign, check, flag, instance, lib, real, sized, whole
 from ._policy import Backup, policy_of
 from ._recording import Recording
-from ._rows import DoubleArray, FloatArray, clouds, given, wrong_shape
+from ._rows import DoubleArray, FloatArray, array_of, clouds, given, wrong_shape
+
+_READ = "; redman.Recording.load(path) reads a file"
 
 
 class CloneReport(_abi.CloneReport):
@@ -58,13 +59,13 @@ class Taught:
         back for validation; action_std: the standard deviation of actions afterwards, 0: unchanged; feed_normalizer: first
         sets the statistics of observations to the recording's. Ctrl-C and cancel leave the agent as it was.
         """
-        _is_recording(recording)
+        instance(recording, Recording, "recording", _READ)
         how = sized(_abi.rdm_clone_config)
         check(lib.rdm_clone_config_init(byref(how), ctypes.sizeof(how)))
         assign(how, {"epochs": epochs, "batch_rows": batch_rows, "patience": patience, "learning_rate": learning_rate,
                      "learning_rate_end": learning_rate_end, "validation": validation, "action_std": action_std, "seed": seed,
-                     "feed_normalizer": int(feed_normalizer)})
-        losses = [np.zeros(max(min(epochs, 100_000), 1)) for _ in range(2)]
+                     "feed_normalizer": flag(feed_normalizer, "feed_normalizer")})
+        losses = [np.zeros(max(min(how.epochs, 100_000), 1)) for _ in range(2)]
         how.capacity = len(losses[0])
         how.train_loss, how.validation_loss = (loss.ctypes.data for loss in losses)
         report = sized(_abi.rdm_clone_report)
@@ -78,10 +79,11 @@ class Taught:
         environment. A row of the recording is one decision of the agent (action_repeat). The first call fills the memory and
         sets the statistics of observations; further calls with the same recording continue. UnsupportedError for other
         algorithms."""
-        _is_recording(recording)
+        instance(recording, Recording, "recording", _READ)
+        steps = whole(steps, "steps", -(1 << 63), (1 << 63) - 1)
         report = sized(_abi.rdm_learn_report)
         with self._lock, recording._lock:
-            self._run(lib.rdm_agent_learn, recording._handle.value, int(steps), byref(report))
+            self._run(lib.rdm_agent_learn, recording._handle.value, steps, byref(report))
         return _abi.LearnReport(report)
 
     @property
@@ -93,7 +95,7 @@ class Taught:
     @recording.setter
     def recording(self, recording: Optional[Recording]) -> None:
         if recording is not None:
-            _is_recording(recording)
+            instance(recording, Recording, "recording", _READ)
         with self._lock:
             self._check(lib.rdm_agent_set_recording(self._a, None if recording is None else recording._handle.value))
             self._recording = recording
@@ -102,15 +104,15 @@ class Taught:
         """Copies the actor, its standard deviation and the statistics of observations from a policy: a Policy, its file or
         run folder, or "trained". The statistics count as `samples` observations, 2 to 1e12. ArgumentError where networks
         differ: the text says in what, and nothing changes."""
-        taken = policy_of(policy, self._config["task"])
+        taken, samples = policy_of(policy, self._config["task"]), real(samples, "samples")
         with self._lock:
-            self._check(lib.rdm_agent_set_policy(self._a, taken._open(), float(samples)))
+            self._check(lib.rdm_agent_set_policy(self._a, taken._open(), samples))
 
     def values(self, obs: Any) -> tuple[FloatArray, FloatArray]:
         """The critics' predictions for observations [n][obs_dim], or for one [obs_dim]: the discounted sum of future rewards
         [n], and that of each cost [n][cost_dim], 0 for a cost that the agent does not limit. UnsupportedError with options
         normalize_reward or normalize_cost, under which critics have no unit."""
-        seen = np.asarray(obs)
+        seen = array_of(obs, "obs")
         if seen.ndim not in (1, 2) or seen.shape[-1] != self.obs_dim:
             raise wrong_shape("obs", seen.shape, f"(rows, {self.obs_dim})")
         rows = 1 if seen.ndim == 1 else len(seen)
@@ -128,7 +130,8 @@ class Taught:
                  seed: int = 0) -> _abi.PretrainReport:
         """Trains the encoder to classify the points of clouds [rows][num_points][3] by label [rows][num_points], each below
         num_labels; nothing else changes. epochs: passes over the clouds. StateError without option encoder."""
-        rows = len(points)
+        points = array_of(points, "points")
+        rows = len(points) if points.ndim else 0
         cloud, kept = clouds(points, point_class, point_color, rows)
         named = given(label, _abi.FUNCTIONS["rdm_agent_pretrain"].rows["label"],
                       {"rows": rows, "num_points": cloud.num_points}, "label")
@@ -141,8 +144,3 @@ class Taught:
             self._run(lib.rdm_agent_pretrain, byref(cloud), named.ctypes.data, rows, byref(how), byref(report))
         del kept
         return _abi.PretrainReport(report)
-
-
-def _is_recording(recording: Any) -> None:
-    if not isinstance(recording, Recording):
-        raise UsageError(f"recording: it must be a redman.Recording, not {recording!r}; redman.Recording.load(path) reads a file")

@@ -10,7 +10,7 @@ import numpy as np
 
 from . import _abi
 from ._abi import RDM_TEXT_SIZE, ResultCode
-from ._library import check, encoded, lib, sized, text
+from ._library import check, encoded, instance, lib, sized, text
 from ._pool import Pool
 from ._rows import Array
 
@@ -32,8 +32,8 @@ def groups(pool: Pool, which: Optional[str] = None) -> list[Group]:
     """
     config = sized(_abi.rdm_agent_config)
     check(lib.rdm_agent_config_init(byref(config), ctypes.sizeof(config)))
-    check(lib.rdm_agent_config_for_pool(byref(config), pool._open()))
-    wanted: Any = None if which is None else encoded(which)
+    check(lib.rdm_agent_config_for_pool(byref(config), instance(pool, Pool, "pool")._open()))
+    wanted: Any = None if which is None else encoded(which, "which")
     columns = np.empty(config.obs_dim, np.int32)
     name = ctypes.create_string_buffer(RDM_TEXT_SIZE)
     found: list[Group] = []

@@ -33,7 +33,7 @@ class Tensors(Mapping[str, FloatArray]):
         if name not in shapes:
             raise KeyError(name)
         out = np.empty(shapes[name], np.float32)
-        check(self._read(self._owner._open(), encoded(name), out.ctypes.data, out.size))
+        check(self._read(self._owner._open(), encoded(name, "name"), out.ctypes.data, out.size))
         return out
 
     def __iter__(self) -> Iterator[str]:

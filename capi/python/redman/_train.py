@@ -13,7 +13,7 @@ from typing import Any, List, Mapping, Optional, Sequence, Tuple, TypeVar, Union
 from . import _discovery, _taught
 from ._curve import settings_of
 from ._error import ArgumentError, FormatError, UnsupportedError, UsageError
-from ._files import MOST_TASK, read_whole
+from ._files import MOST_TASK, as_path, read_whole
 from ._imported import path_of
 from ._library import all_cores, whole
 from ._limits import CostLimits
@@ -372,8 +372,8 @@ def settings_of_folder(folder: FolderPath, own: Optional[Own] = None) -> Setting
 
 def loaded_run(folder: FolderPath) -> Run:
     """Reads a run folder as a Run."""
-    settings, config = settings_of_folder(folder), read_config(folder)
-    policy, path = Policy.load(folder), Path(folder)
+    path = as_path(folder, "folder")
+    settings, config, policy = settings_of_folder(path), read_config(path), Policy.load(path)
 
     def agent() -> Any:
         trainer = Trainer(settings)

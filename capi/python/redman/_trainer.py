@@ -182,7 +182,7 @@ def _handles_costs(algo: str, columns: int) -> bool:
     check(lib.rdm_agent_config_init(byref(config), ctypes.sizeof(config)))
     none = np.full(columns, -1.0)
     config.obs_dim = config.action_dim = config.num_envs = 1
-    config.cost_dim, config.algo, config.cost_limits = columns, encoded(algo), none.ctypes.data
+    config.cost_dim, config.algo, config.cost_limits = columns, encoded(algo, "algo"), none.ctypes.data
     size = ctypes.c_size_t()
     return bool(lib.rdm_agent_config_memory(byref(config), byref(size)))
 

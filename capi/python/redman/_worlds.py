@@ -11,11 +11,13 @@ from typing import Any, Mapping, Optional, Sequence, Union
 import numpy as np
 
 from ._abi import ShieldKind
-from ._error import ArgumentError, UnsupportedError
+from ._error import ArgumentError, UnsupportedError, UsageError
+from ._library import int32, whole
 from ._names import nearest
+from ._options import as_dict
 from ._policy import Backup
 from ._pool import Pool
-from ._rows import Array, FloatArray
+from ._rows import Array, FloatArray, array_of
 from ._senses import Senses
 from ._shield import NAMES, Shielding, shield_of
 
@@ -30,11 +32,11 @@ def center_of(pool: Pool, center: Center) -> Optional[FloatArray]:
         return None
     if isinstance(center, str):
         if center != "initial":
-            raise ValueError(f'center: it must be None, "initial" or [{pool.action_dim}] numbers, not "{center}"')
+            raise ArgumentError(f'center: it must be None, "initial" or [{pool.action_dim}] numbers, not "{center}"')
         return pool.initial_mean
-    given = np.array(center, np.float32)
+    given = np.array(array_of(center, "center", np.float32))
     if given.shape != (pool.action_dim,) or not np.all(np.abs(given) <= 1):
-        raise ValueError(f"center: it must be [{pool.action_dim}] numbers in [-1, 1], not {given.shape}")
+        raise ArgumentError(f"center: it must be [{pool.action_dim}] numbers in [-1, 1], not {given.shape}")
     return given
 
 
@@ -42,11 +44,11 @@ def _modality(observe: Observe, options: Mapping[str, Any]) -> tuple[dict[str, A
     """The options with observe as modality, and whether there is no row."""
     if observe is None:
         return dict(options), False
-    words = observe.split("+") if isinstance(observe, str) else list(observe)
+    words = observe.split("+") if isinstance(observe, str) else list(observe) if isinstance(observe, (list, tuple)) else []
     given = next((key for key in options if key.lower().replace("-", "_") == "modality"), None)
     if given is not None:
         raise ArgumentError(f"observe and option {given} say the same; give one of them")
-    if not words or len(set(words)) < len(words):
+    if not words or not all(isinstance(word, str) for word in words) or len(set(words)) < len(words):
         raise ArgumentError(f"observe: {observe!r} is no list of words that differ, such as [\"state\", \"rgb\"]")
     if words == ["state"]:
         return dict(options), False
@@ -70,10 +72,11 @@ class Worlds:
                  action_repeat: Union[int, str] = 1, center: Center = None, camera: Optional[str] = None,
                  width: int = 320, height: int = 240, shield: Shielding = None, shield_policy: Optional[Backup] = None,
                  senses: str = "", observe: Observe = None) -> None:
-        options, self.stateless = _modality(observe, options or {})  # stateless: observations have no row
-        if action_repeat != 1:
-            options["action_repeat"] = 0 if action_repeat == "task" else action_repeat
-        self.seed: Seeds = secrets.randbits(63) if seed is None else int(seed)
+        options, self.stateless = _modality(observe, as_dict(options))  # stateless: observations have no row
+        repeat = 0 if isinstance(action_repeat, str) and action_repeat == "task" else int32(action_repeat, "action_repeat")
+        if repeat != 1:
+            options["action_repeat"] = repeat
+        self.seed: Seeds = secrets.randbits(63) if seed is None else whole(seed, "seed", 0, (1 << 64) - 1)
         self.pool = Pool(task, num_envs=num_envs, seed=self.seed, threads=threads, autoreset=autoreset, options=options)
         self._take_rows()
         if senses and self.senses:
@@ -83,7 +86,7 @@ class Worlds:
         reach = np.ones(self.pool.action_dim, np.float32) if self.center is None else 1 + np.abs(self.center)
         self.action_low, self.action_high = -reach, reach
         self.shield = shield_of(self.pool, shield, shield_policy)
-        self._applied, self._kinds = np.zeros_like(self.action), np.zeros(num_envs, np.int32)  # of the last step
+        self._applied, self._kinds = np.zeros_like(self.action), np.zeros(self.pool.num_envs, np.int32)  # of the last step
         low, self.obs_high = self.pool.bounds
         self.obs_low = np.where(low == self.obs_high, low - 1, low)  # checkers take no box without width
 
@@ -137,12 +140,12 @@ class Worlds:
             self.seed = None
         if isinstance(seed, (int, np.integer)):
             seed = [int(seed) + i for i in range(n)]
+        if seed is not None and (isinstance(seed, (str, bytes)) or not hasattr(seed, "__len__")):
+            raise UsageError(f"seed: it must be a whole number, a list with one for each world, or None, not {seed!r}")
         seeds: list[Optional[int]] = [None] * n if seed is None else list(seed)
         if len(seeds) != n:
-            raise ValueError(f"seed: give one for each of the {n} worlds, not {len(seeds)}")
-        for s in seeds:
-            if s is not None and not 0 <= s < 2**64:
-                raise ValueError(f"seed: {s} is outside [0, 2^64)")
+            raise ArgumentError(f"seed: give one for each of the {n} worlds, not {len(seeds)}")
+        seeds = [None if s is None else whole(s, "seed", 0, (1 << 64) - 1) for s in seeds]
         chosen = np.ones(n, bool) if mask is None else mask
         named = np.array([s is not None for s in seeds])
         if np.any(chosen & named):
@@ -152,7 +155,7 @@ class Worlds:
 
     def no_options(self, options: Optional[Mapping[str, Any]], known: Sequence[str] = ()) -> None:
         """Refuses options of a reset, since there are none."""
-        for key in options or {}:
+        for key in as_dict(options):
             if key in known:
                 continue
             takes = f"reset takes {', '.join(known)}" if known else "reset takes none"
@@ -172,11 +175,11 @@ class Worlds:
 
     def _write(self, to: FloatArray, actions: Any) -> Array:
         self.pool.watch(actions, self.center is not None)
-        rows = np.asarray(actions)
+        rows = array_of(actions, "action")
         if rows.dtype != np.float64:  # an actor's about the center, whose sum is then exact
-            rows = np.asarray(rows, np.float32)
+            rows = array_of(rows, "action", np.float32)
         if rows.shape != to.shape:
-            raise ValueError(f"action: its shape must be {to.shape}, not {rows.shape}")
+            raise ArgumentError(f"action: its shape must be {to.shape}, not {rows.shape}")
         if self.center is None:
             to[...] = rows
         else:

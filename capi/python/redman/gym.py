@@ -32,6 +32,7 @@ import numpy as np
 from ._defaults import Defaults, defaults
 from ._discovery import tasks
 from ._error import ArgumentError
+from ._library import whole
 from ._policy import Backup
 from ._pool import Pool
 from ._rows import Array
@@ -202,6 +203,7 @@ class Env(_Named, _Env):
     def reset(self, *, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None) -> tuple[Any, Info]:
         """Begins a new episode: that of the seed, or the next of the world's own stream. options must be empty."""
         self.worlds.no_options(options)
+        seed = None if seed is None else whole(seed, "seed", 0, (1 << 64) - 1)
         super().reset(seed=seed)
         self.worlds.reset(seed if seed is None else [seed])
         self._keep()
@@ -246,9 +248,10 @@ class VectorEnv(_Named, _VectorEnv):
                  height: int = 240, action_repeat: Union[int, str] = 1, center: Center = None,
                  named: bool = False, max_episode_steps: Optional[int] = None, shield: Shielding = None,
                  shield_policy: Optional[Backup] = None, observe: Observe = None) -> None:
-        mode = getattr(autoreset_mode, "value", autoreset_mode) or ("SameStep" if _OLD else "NextStep")
-        if mode not in _MODES:
-            raise ArgumentError(f"autoreset_mode: {mode} is none of {', '.join(_MODES)}")
+        usual = "SameStep" if _OLD else "NextStep"
+        mode = usual if autoreset_mode is None else getattr(autoreset_mode, "value", autoreset_mode)
+        if not isinstance(mode, str) or mode not in _MODES:
+            raise ArgumentError(f"autoreset_mode: {mode!r} is none of {', '.join(_MODES)}")
         worlds = Worlds(task, num_envs, seed=seed, autoreset=_MODES[mode], options=options, threads=threads,
                         action_repeat=action_repeat, center=center, camera=camera, width=width, height=height,
                         shield=shield, shield_policy=shield_policy, observe=observe,
@@ -257,6 +260,7 @@ class VectorEnv(_Named, _VectorEnv):
             raise ArgumentError(f"max_episode_steps: {max_episode_steps}, but an episode has {worlds.max_episode_steps} "
                                 "steps; options={'max_steps': n} makes it n control steps")
         obs, action = self._begin(worlds, render_mode, named)
+        num_envs = worlds.pool.num_envs
         if _OLD:
             _VectorEnv.__init__(self, num_envs, obs, action)
         else:

@@ -21,7 +21,8 @@ from typing import Any, Callable, Hashable, Mapping, NamedTuple, Sequence, Union
 import numpy as np
 
 from ._error import ArgumentError, UsageError
-from ._rows import Array
+from ._library import real
+from ._rows import Array, array_of
 
 __all__ = ["Improvement", "difference", "improvement", "interval", "iqm", "letters", "normalised", "ranks"]
 
@@ -115,6 +116,8 @@ def letters(scores: Mapping[str, Scores], level: float = 0.95) -> dict[str, str]
     because the interval of difference() does not contain 0, as in `redman compare` and `redman report`. An algorithm with a
     single run of a task has none (Piepho: An Algorithm for a Letter-Based Representation of All-Pairwise Comparisons, J. of
     Computational and Graphical Statistics 13, 2004)."""
+    if not isinstance(scores, Mapping):
+        raise UsageError(f"scores: it must be a dict {{algorithm: scores by task}}, not {scores!r}")
     tasks = {name: _by_task(rows, name) for name, rows in scores.items()}
     names = sorted((name for name in tasks if all(len(runs) > 1 for runs in tasks[name].values())), key=lambda name: -iqm(scores[name]))
     groups: list[list[str]] = [names] if names else []
@@ -138,7 +141,7 @@ def normalised(value: Any, low: Any, high: Any) -> Any:
     """(value - low) / (high - low): 0 is as good as low, a policy that learns nothing, and 1 as good as high, a reference.
     Numbers, or arrays that numpy spreads over each other; low above high where less is better (Bellemare et al.: The Arcade
     Learning Environment, JAIR 47, 2013)."""
-    x, zero, one = (np.asarray(number, np.float64) for number in (value, low, high))
+    x, zero, one = (array_of(number, name, np.float64) for name, number in (("value", value), ("low", low), ("high", high)))
     if np.any(zero == one):
         raise ArgumentError(f"normalised: low and high are the same, {low}")
     out = (x - zero) / (one - zero)
@@ -178,7 +181,7 @@ def iqm_of(samples: Array) -> Array:
 def bootstrap(sizes: Sequence[int], statistic: Callable[[Samples], Array], level: float) -> Array:
     """The lower and upper end of a percentile bootstrap's interval of statistic(), which is called with rows drawn with
     replacement from strata of these sizes; with an extra axis where the statistic has columns."""
-    if not 0 < level < 1:
+    if not 0 < real(level, "level") < 1:
         raise ArgumentError(f"level: {level} is not between 0 and 1")
     random = np.random.RandomState(_SEED)  # its stream is the same in all versions of numpy
     at_once = max(1, min(_RESAMPLES, _AT_ONCE // sum(sizes)))
@@ -200,13 +203,15 @@ def _by_task(scores: Any, name: str = "scores") -> dict[Hashable, Array]:
     """Scores of each task's runs."""
     if isinstance(scores, Mapping):
         named = dict(scores)
+    elif isinstance(scores, (str, bytes)) or not hasattr(scores, "__len__") or isinstance(scores, type):
+        raise UsageError(f"{name}: it must be scores by task, a dict or rows, or a list of numbers, not {scores!r}")
     elif len(scores) and np.ndim(scores[0]):
         named = dict(enumerate(scores))
     else:
         named = {0: scores}
     out: dict[Hashable, Array] = {}
     for task, runs in named.items():
-        row = np.atleast_1d(np.asarray(runs, np.float64))
+        row = np.atleast_1d(array_of(runs, f"{name}: task {task}", np.float64))
         if row.ndim != 1 or not len(row) or not np.isfinite(row).all():
             raise ArgumentError(f"{name}: task {task}: one finite number for each run, not {runs!r}")
         out[task] = row
