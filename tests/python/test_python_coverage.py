@@ -4,9 +4,11 @@ every public name says what it is.
     python3 test_python_coverage.py --table     the functions, and the name that calls each
 """
 import ast
+import dataclasses
 import enum
 import fnmatch
 import inspect
+import operator
 import pydoc
 import re
 import sys
@@ -16,6 +18,7 @@ from pathlib import Path
 
 import redman
 from redman import _abi, _import_abi
+from redman._record import Record
 
 PACKAGE = Path(redman.__file__).parent
 ADAPTERS = ("data", "gym", "omnisafe", "pettingzoo", "safety", "sb3", "stats")
@@ -206,6 +209,17 @@ class Coverage(unittest.TestCase):
                 thing = getattr(thing, part)
 
 
+MADE_FOR_USERS = ("Run", "SceneBuilder", "Sensors", "Window", "Worlds")  # users do not call these
+
+
+def untold_of(name, function, of_class=""):
+    """The arguments that no text has a word of."""
+    text = f"{inspect.getdoc(function) or ''} {of_class}"
+    return [f"{name}: {argument.name}" for argument in inspect.signature(function).parameters.values()
+            if argument.name != "self" and argument.name[0] != "_" and argument.kind not in (argument.VAR_KEYWORD, argument.VAR_POSITIONAL)
+            and not re.search(rf"\b{argument.name}\b", text)]
+
+
 class Manual(unittest.TestCase):
     def test_the_overview_has_every_public_name_and_no_other(self):
         text = redman.__doc__.split("WHAT IS THERE")[1].split("RULES")[0]
@@ -234,6 +248,20 @@ class Manual(unittest.TestCase):
                     if not part.startswith("_") and (callable(member) or isinstance(member, property)) and not told:
                         bare.append(f"{name}.{part}")
         self.assertEqual(bare, [])
+
+    def test_every_argument_has_a_word_in_the_text_of_its_function_or_class(self):
+        untold = []
+        for name in (*redman.__all__, *(f"stats.{own}" for own in redman.stats.__all__)):
+            thing = operator.attrgetter(name)(redman)
+            if inspect.isfunction(thing):
+                untold += untold_of(name, thing)
+            elif isinstance(thing, type) and not issubclass(thing, (enum.Enum, Exception, tuple)) and not dataclasses.is_dataclass(thing):
+                of_class = " ".join(kind.__doc__ or "" for kind in thing.__mro__ if kind.__module__.startswith("redman"))
+                for part, member in inspect.getmembers(thing):
+                    if inspect.isroutine(member) and str(getattr(member, "__module__", "")).startswith("redman") and \
+                            (part[0] != "_" or part == "__init__" and name not in MADE_FOR_USERS and not issubclass(thing, Record)):
+                        untold += untold_of(f"{name}.{part}", member, of_class)
+        self.assertEqual(untold, [])
 
     def test_they_say_it_in_the_words_of_python(self):
         for name in redman.__all__:

@@ -58,9 +58,9 @@ class Actor(Hinted):
             pool.step(actor())                                   obs, ... = env.step(actor(obs))
 
     The second argument is a pool, or an environment of redman.gym, sb3, safety or omnisafe, wrapped or not. The actor reads
-    from it how many control steps a step has, the center that is added to actions, the point clouds, and where episodes
-    have begun. So a policy behaves the same in all of them. For other worlds give num_envs=, action_repeat= and center=, and
-    call reset(mask) where episodes begin.
+    from it how many control steps a step has, the center that is added to actions, the point clouds, and where episodes have
+    begun. So a policy behaves the same in all of them. For other worlds give num_envs=, action_repeat= and center=, and call
+    reset(mask) where episodes begin. stochastic: samples actions, with noise from the seed.
     """
 
     policy: Policy
@@ -143,7 +143,8 @@ class Actor(Hinted):
     def predict(self, observation: Any, state: Any = None, episode_start: Any = None,
                 deterministic: bool = True) -> tuple[Any, Any]:
         """Returns (action, state) like predict of a Stable-Baselines3 model. The actor holds actions itself and returns state
-        unchanged."""
+        unchanged. observation: as obs of a call; episode_start [n]: where an episode has begun; deterministic: must be False
+        where the actor samples, and True elsewhere."""
         if flag(deterministic, "deterministic") == self.stochastic:
             raise ArgumentError(f"predict: deterministic={deterministic} cannot be used, since this actor "
                                 f"{'samples' if self.stochastic else 'takes the mean'}: make it with "

@@ -20,7 +20,8 @@ from . import _abi, _discovery
 from ._abi import ActMode
 from ._error import ArgumentError, Error, NotFoundError, StateError, UsageError
 from ._files import read_whole, write_whole
-from ._library import Handle, assign, bytes_of, check, encoded, failure, instance, int32, lib, raise_kept, raised, raw, real, sized, text
+from ._library import (Handle, assign, bytes_of, check, encoded, failure, instance, int32, lib, raise_kept, raised, raw, real, sized,
+                       text)
 from ._limits import CostLimits, each_cost
 from ._names import Hinted, keywords, nearest, one_of
 from ._options import Given, Options, Value, as_dict, kind_of, laid, option_array, read_settings, settings_of
@@ -190,12 +191,12 @@ class Agent(Taught, Hinted):
 
     def act(self, obs: Any, mode: str = "sample", out: Optional[FloatArray] = None, points: Any = None,
             point_class: Any = None, point_color: Any = None) -> FloatArray:
-        """Actions [num_envs][action_dim] for obs [num_envs][obs_dim]: a sample, after which record must be called, or the
-        mean.
+        """Actions [num_envs][action_dim] for obs [num_envs][obs_dim]: a sample, after which record must be called (mode
+        "sample"), or the mean (mode "mean"). out: the array that they are written to and that is returned; None: a new one.
 
-        One call is one decision, to be held for option action_repeat control steps. Samples are not clipped. An agent
-        with option encoder takes points [num_envs][encoder_points][3] too, with encoder_classes their classes, and with encoder_color
-        their colours [num_envs][encoder_points][3], 0 to 255.
+        One call is one decision, to be held for option action_repeat control steps. Samples are not clipped. An agent with
+        option encoder takes points [num_envs][encoder_points][3] too, with encoder_classes their classes (point_class
+        [num_envs][encoder_points]), and with encoder_color their colours (point_color [num_envs][encoder_points][3]), 0 to 255.
         """
         chosen = one_of(mode, _MODES, "mode")
         rows = self._given("rdm_agent_act", "obs", obs)
@@ -233,8 +234,10 @@ class Agent(Taught, Hinted):
         """Records what followed the last sampled actions, a row per world. None means: no ends, all rows are valid, no
         success, what follows a truncation is valued 0, a decision took as many control steps as option action_repeat says.
 
-        reward and cost are sums over the decision, final_obs is read where truncated, steps are control steps. limit: the
-        limit on column 0 that each world's episode has for itself, instead of cost_limit.
+        reward [num_envs] and cost [num_envs][cost_dim] are sums over the decision, costs not below 0. terminated, truncated and
+        success [num_envs]: whether the task ended, the time was over, the task succeeded. final_obs [num_envs][obs_dim] is read
+        where truncated. valid [num_envs]: rows to learn from. steps [num_envs]: control steps that it took. limit: the limit on
+        column 0 that each world's episode has for itself, instead of cost_limit.
         """
         self._record("record", reward=reward, cost=cost, terminated=terminated, truncated=truncated, final_obs=final_obs,
                      valid=valid, success=success, steps=steps, limit=limit)
@@ -248,8 +251,9 @@ class Agent(Taught, Hinted):
     def put(self, obs: Any, action: Any, reward: Any, cost: Any = None, terminated: Any = None, truncated: Any = None,
             final_obs: Any = None, valid: Any = None, success: Any = None, steps: Any = None,
             generation: int = 0, limit: Any = None) -> None:
-        """Records a decision that was taken elsewhere, instead of act and record: obs, the actions that the policy of this
-        epoch sampled for them, not clipped, and what followed, as in record.
+        """Records a decision that was taken elsewhere, instead of act and record: obs [num_envs][obs_dim], the action
+        [num_envs][action_dim] that the policy of this epoch sampled for it, not clipped, and what followed: reward, cost,
+        terminated, truncated, final_obs, valid, success, steps and limit as in record.
 
         generation: that of the policy, as in its file; StateError when it is not the agent's any more. 0: not checked.
         """
@@ -276,7 +280,8 @@ class Agent(Taught, Hinted):
         return transition, rows
 
     def update(self, last_obs: Any) -> Epoch:
-        """Learns from a full horizon; last_obs follows the last record."""
+        """Learns from a full horizon; last_obs [num_envs][obs_dim] follows the last record. StateError before the horizon is
+        full."""
         rows = self._given("rdm_agent_update", "last_obs", last_obs)
         epoch = sized(_abi.rdm_epoch)
         with self._lock:
@@ -284,7 +289,8 @@ class Agent(Taught, Hinted):
         return self._epoch(epoch)
 
     def update_begin(self, last_obs: Any) -> None:
-        """Begins the same update in slices, between which the caller can act: call update_slice until it returns the epoch.
+        """Begins the same update, with the same last_obs, in slices, between which the caller can act: call update_slice until
+        it returns the epoch.
 
             agent.update_begin(obs)
             while (epoch := agent.update_slice()) is None:
@@ -298,8 +304,8 @@ class Agent(Taught, Hinted):
             self._check(lib.rdm_agent_update_begin(self._a, rows.ctypes.data))
 
     def update_slice(self, units: int = 1) -> Optional[Epoch]:
-        """Does `units` more pieces of work, each at most one pass of a network over 256 rows; returns the epoch after the
-        last piece."""
+        """Does `units` more pieces of work, 1 or more, each at most one pass of a network over 256 rows; returns the epoch
+        after the last piece, None before."""
         epoch, done = sized(_abi.rdm_epoch), ctypes.c_int32()
         with self._lock:
             self._check(lib.rdm_agent_update_slice(self._a, int32(units, "units"), byref(done), byref(epoch)))
@@ -343,7 +349,7 @@ class Agent(Taught, Hinted):
             pool.reset()
         options = self.options
         if not 0 < steps < math.inf:
-            raise ArgumentError(f"steps: {steps} is not a number above 0")
+            raise ArgumentError(f"steps: {steps:g} is not above 0")
         for _ in range(math.ceil(steps / (self.num_envs * int(options["horizon"]) * int(options["action_repeat"])))):
             epoch = self.rollout(pool)
             if callback and callback(epoch):
@@ -481,22 +487,24 @@ class Agent(Taught, Hinted):
         return state
 
     def load(self, state: Union[bytes, bytearray, memoryview, str, os.PathLike[str]]) -> None:
-        """Continues from the bytes, or the path, of a save() of an agent of the same configuration; nothing changes when it
-        fails."""
+        """Continues from the state, bytes or the path of their file, of a save() of an agent of the same configuration.
+        FormatError for another one; nothing changes when it fails."""
         data = read_whole(state, "agent") if isinstance(state, (str, os.PathLike)) else raw(state, "state")
         with self._lock:
             self._check(lib.rdm_agent_read_state(self._a, data, len(data)))
 
     def write_checkpoint(self, path: Union[str, os.PathLike[str]], pool: Optional[Pool] = None,
                          note: bytes = b"") -> None:
-        """Agent, pool and a note of your own in one file, replaced atomically."""
+        """Writes agent, pool and a note of your own to one file at path, replaced atomically. pool None: the agent alone."""
         worlds, data = None if pool is None else instance(pool, Pool, "pool")._open(), raw(note, "note")
         with self._lock:
             self._check(lib.rdm_checkpoint_write(encoded(path, "path"), self._a, worlds, data, len(data)))
 
     def read_checkpoint(self, path: Union[str, os.PathLike[str]], pool: Optional[Pool] = None) -> bytes:
-        """Continues from write_checkpoint, and returns its note; nothing changes when it fails."""
-        size, note, worlds = c_size_t(), ctypes.create_string_buffer(1), None if pool is None else instance(pool, Pool, "pool")._open()
+        """Continues from the file at path that write_checkpoint wrote, and returns its note; nothing changes when it fails.
+        pool: the worlds that go on from it; None: that of the file is not read."""
+        worlds = None if pool is None else instance(pool, Pool, "pool")._open()
+        size, note = c_size_t(), ctypes.create_string_buffer(1)
         with self._lock:
             while True:
                 self._check(lib.rdm_checkpoint_read(encoded(path, "path"), self._a, worlds, note, len(note), byref(size)))
@@ -559,7 +567,8 @@ def _config_of(pool: Pool) -> dict[str, Any]:
     """What rdm_agent_config_for_pool says, as plain values."""
     config = sized(_abi.rdm_agent_config)
     check(lib.rdm_agent_config_init(byref(config), ctypes.sizeof(config)))
-    check(lib.rdm_agent_config_for_pool(byref(config), instance(pool, Pool, "pool", "; an environment has one, env.pool")._open()))
+    instance(pool, Pool, "pool", "; an environment has one, env.pool")
+    check(lib.rdm_agent_config_for_pool(byref(config), pool._open()))
     pointed: dict[str, Array] = {}
     for name, rows in _abi.ROWS["rdm_agent_config"].items():
         if getattr(config, name):

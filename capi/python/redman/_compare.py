@@ -90,7 +90,8 @@ class Comparison(Hinted):
         return out
 
     def improvement(self, name: str, than: str, task: Optional[str] = None) -> stats.Improvement:
-        """The probability that a run of one name has a higher return than a run of the other (redman.stats.improvement)."""
+        """The probability that a run of one name has a higher return than a run of the other (redman.stats.improvement). task:
+        on this one alone; None: on all."""
         scores = []
         for one in (name, than):
             if one not in self.runs:

@@ -40,7 +40,7 @@ class _Drawn:
         return self
 
     def save(self, path: Union[str, os.PathLike[str]]) -> None:
-        """Writes the picture as an SVG file."""
+        """Writes the picture as an SVG file at path."""
         as_path(path).write_text(self._repr_svg_(), encoding="utf-8")
 
 
@@ -50,6 +50,9 @@ _DRAWS = "it draws itself in a notebook; save('curve.svg') writes the picture"
 class Curve(_Drawn, Hinted, Dict[str, Column]):
     """Columns by name ("TotalEnvSteps", "Metrics/EpRet", ...), a row for each epoch; draws itself in a notebook. It is a
     dict, so pandas.DataFrame(curve) also has a row for each epoch, like to_pandas().
+
+    columns: arrays by name. label: of its line; limit: of the first cost, None for none; folder: where it was read; kind, seed
+    and settings: curves of one kind and settings with different seeds share a line.
     """
 
     _hints = {"show": _DRAWS, "draw": _DRAWS, "df": "to_pandas()", "to_df": "to_pandas()",
@@ -96,7 +99,7 @@ class Curve(_Drawn, Hinted, Dict[str, Column]):
 
 class Curves(_Drawn, Hinted, Sequence[Curve]):
     """Several runs in one picture. Runs that differ in their seeds alone are drawn as their mean in a band of one standard
-    deviation on each side, as `redman plot` does; each=True draws a line for each run."""
+    deviation on each side, as `redman plot` does. curves: a Curve of each; each=True draws a line for each run."""
 
     _hints = {"show": _DRAWS, "draw": _DRAWS}
     each: bool = False  # whether every run has a line of its own

@@ -220,7 +220,7 @@ def task_kept(task: TaskName) -> TaskName:
 
 
 def algo(name: str) -> Algo:
-    """One learner, found as task() finds."""
+    """One learner by its name, found as task() finds."""
     return algo_at(find(lib.rdm_algo_find, name))
 
 

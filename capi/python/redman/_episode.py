@@ -46,7 +46,9 @@ class Episode(Hinted):
             for _ in range(75):
                 pool.step(actor())
 
-    frames: how many moments it has, the first one included.
+    frames: how many moments it has, the first one included. env: the number of the world in its pool. actor, limits, own,
+    shield and seed: what the page says of the policy, the limits, functions of rewards and costs, and the shield. camera, of
+    the methods: a name of cameras; None: "close", else the first. path: of the file.
     """
 
     _hints = {"save": 'render("throw.html")', "show": "an episode draws itself in a notebook; render(\"throw.html\") writes a page",
@@ -79,7 +81,7 @@ class Episode(Hinted):
         return len(self._frames)
 
     def add(self, stepped_in: Optional[Array] = None) -> None:
-        """Adds the world as it is now."""
+        """Adds the world as it is now. stepped_in [num_envs]: where a shield changed the decision; None: nowhere."""
         if not self._frames:
             self._scene = self._feed.scene()
         self._frames.append(self._feed.frame(self._env, cloud=False, stepped_in=stepped_in))
@@ -112,13 +114,13 @@ class Episode(Hinted):
             Path(path).write_bytes(_png.row(list(self.pictures(moments, view, width, height, look))))
 
     def moments(self, count: int) -> list[int]:
-        """Control steps at even distances from the first to the last."""
+        """`count` control steps, 1 or more, at even distances from the first to the last."""
         count = whole(count, "strip", 1, 1 << 16)
         return sorted({round(k * (self.frames - 1) / max(1, count - 1)) for k in range(count)})
 
     def pictures(self, steps: Any, camera: Optional[str] = None, width: int = 640, height: int = 480,
                  look: str = "fine") -> Iterator[Array]:
-        """Pictures [height][width][3] of these control steps, one after the other."""
+        """Pictures [height][width][3] of these control steps, one after the other; look: as in render."""
         from ._pool import Pool
         view = self.camera(camera)
         own: dict[str, Any] = {**self._config, "num_envs": 1, "threads": 0, "ranks": None, "autoreset": "off"}

@@ -82,8 +82,8 @@ def load_robot(path: Source, *, name: Optional[str] = None, kind: Optional[str] 
                mount: Optional[str] = None, flange: Optional[str] = None, folder: Union[None, str, os.PathLike[str]] = None,
                packages: Union[None, str, os.PathLike[str]] = None, density: float = 0.0, slide_range: float = 0.0,
                skip_meshes: bool = False, mend_inertia: bool = False, check: bool = False) -> Robot:
-    """Loads a robot from a URDF, MJCF or .robot file, or from the bytes of one, and registers it under its name, for option
-    hand or arm of the hand tasks. Its notes say what was dropped, changed and guessed.
+    """Loads a robot from the URDF, MJCF or .robot file at path, or from the bytes of one, and registers it under its name, for
+    option hand or arm of the hand tasks. Its notes say what was dropped, changed and guessed.
 
         robot = redman.load_robot("my.urdf", tips=["index_tip", "thumb_tip"], check=True)
         for note in robot.notes:
@@ -130,7 +130,8 @@ def load_robot(path: Source, *, name: Optional[str] = None, kind: Optional[str] 
 
 
 def load_object(path: Source) -> Object:
-    """Loads an object from an .object file, or from the bytes of one, and registers it under its name, for option object.
+    """Loads an object from the .object file at path, or from the bytes of one, and registers it under its name, for option
+    object.
 
     An unchanged file is not read again; a changed one replaces what was loaded from it.
     """
@@ -150,8 +151,8 @@ def load_object(path: Source) -> Object:
 
 
 def load_task(path: Source) -> TaskInfo:
-    """Loads a task from a .task file, or from the bytes of one: its scene, observation, rewards and costs as text. It is
-    registered under its name, and can be used wherever a task of the library can.
+    """Loads a task from the .task file at path, or from the bytes of one: its scene, observation, rewards and costs as text. It
+    is registered under its name, and can be used wherever a task of the library can.
 
     An unchanged file is not read again; a changed one replaces what was loaded from it.
     """

@@ -94,7 +94,8 @@ raised: list[tuple[str, BaseException]] = []
 # What the library's texts tell to call, as it is said here.
 _CALLS = {
     "rdm_agent_set_recording": "agent.recording = recording", "rdm_agent_update_slice": "agent.update_slice()",
-    "rdm_agent_clone": "agent.clone()", "rdm_agent_discard": "agent.discard()", "rdm_policy_act_points": "policy.act(obs, points=points)",
+    "rdm_agent_clone": "agent.clone()", "rdm_agent_discard": "agent.discard()",
+    "rdm_policy_act_points": "policy.act(obs, points=points)",
     "rdm_policy_act_points_state": "policy.act(obs, points=points, state=state)",
     "rdm_policy_act_state": "policy.act(obs, state)", "rdm_policy_act": "policy.act()", "rdm_policy_sample": "policy.sample()"}
 

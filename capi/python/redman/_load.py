@@ -26,8 +26,8 @@ _LOADERS: dict[str, Callable[[Any], Any]] = {
 
 
 def load(path: Union[str, os.PathLike[str]]) -> Any:
-    """Loads what a file or a folder contains: a Policy (.rdm or a run folder), a Recording (.npz), a Robot (.urdf, .xml,
-    .mjcf, .robot), an Object (.object), a Task (.task), a Map (.ot, .bt) or a Curve (progress.csv).
+    """Loads what the file or the folder at path contains: a Policy (.rdm or a run folder), a Recording (.npz), a Robot (.urdf,
+    .xml, .mjcf, .robot), an Object (.object), a Task (.task), a Map (.ot, .bt) or a Curve (progress.csv).
 
     For what an agent has saved, use Agent.load or Agent.read_checkpoint of an agent with the same configuration.
     """

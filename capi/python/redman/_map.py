@@ -39,8 +39,9 @@ class Map(Hinted):
         m.insert(origin, points)
         m.query(points)                     # probability of occupied, -1 where unknown
 
-    Points are in m. More keywords: memory (bytes, 64 MiB), max_range (m, 4; 0: no limit), hit, miss, low, high, threshold.
-    dropped: voxels left out so far because the map was full.
+    points are [count][3], m; origin, direction, low and high [3] of a ray or a box too; pose is [7], a position and a
+    quaternion (x, y, z, w). More keywords: memory (bytes, 64 MiB), max_range (m, 4; 0: no limit), hit, miss, low, high,
+    threshold. dropped: voxels left out so far because the map was full.
     """
 
     dropped: int = 0
@@ -76,8 +77,9 @@ class Map(Hinted):
 
     def scan(self, pool: Pool, env: int = 0, camera: Optional[str] = None, width: int = 96, height: int = 96,
              skip: Sequence[int] = ()) -> int:
-        """Adds one scan by a camera of the pool's task; rays that end on a shape in skip are left out. Returns how many
-        voxels a full map left out (0 in one that is large enough), and warns if there were any."""
+        """Adds one scan by a camera of the pool's task (None: its first) in world env, of width x height rays; rays that end on
+        a shape in skip are left out. Returns how many voxels a full map left out (0 in one that is large enough), and warns if
+        there were any."""
         instance(pool, Pool, "pool")
         left = np.ascontiguousarray(array_of(skip, "skip", np.int32))
         dropped = c_uint64()
@@ -124,13 +126,14 @@ class Map(Hinted):
 
     def raycast(self, origin: Sequence[float], direction: Sequence[float], range: float,
                 through_unknown: bool = False) -> Optional[FloatArray]:
-        """The point where the ray enters the first occupied voxel within range, m, or None."""
+        """The point where the ray enters the first occupied voxel within range, m, or None. through_unknown: goes on where
+        nothing is known; else an unknown voxel ends it."""
         rays = [self._given("rdm_map_raycast", name, value)
                 for name, value in (("origin", origin), ("direction", direction))]
         hit = np.empty(3, np.float32)
         found = c_int32()
-        self._check(lib.rdm_map_raycast(self._open(), *(row.ctypes.data for row in rays), real(range, "range"), flag(through_unknown, "through_unknown"),
-                                        hit.ctypes.data, byref(found)))
+        self._check(lib.rdm_map_raycast(self._open(), *(row.ctypes.data for row in rays), real(range, "range"),
+                                        flag(through_unknown, "through_unknown"), hit.ctypes.data, byref(found)))
         return hit if found.value else None
 
     def distance(self, points: Any, most: float) -> FloatArray:
@@ -141,7 +144,7 @@ class Map(Hinted):
         return out
 
     def grid(self, pose: Sequence[float], n: Sequence[int], side: float) -> npt.NDArray[np.int8]:
-        """[n0][n1][n2] cells of `side` m around pose: 1 occupied, 0 free, -1 unknown."""
+        """[n0][n1][n2] cells, n = [n0, n1, n2] of 1 to 1024, of `side` m around pose: 1 occupied, 0 free, -1 unknown."""
         counts = self._given("rdm_map_get_grid", "n", n)
         fits = all(1 <= count <= 1024 for count in counts)  # if not, the call says so
         out = np.empty(tuple(counts) if fits else 0, np.int8)
@@ -160,21 +163,21 @@ class Map(Hinted):
         return _abi.MapInfo(filled(_abi.rdm_map_info, lib.rdm_map_get_info, self._open()))
 
     def save(self, format: str = "ot") -> bytes:
-        """The bytes of an OctoMap file: "ot" with probabilities, "bt" occupied or free."""
+        """The bytes of an OctoMap file of a format: "ot" with probabilities, "bt" occupied or free."""
         return bytes_of(lib.rdm_map_write, self._open(), one_of(format, _FORMATS, "format"))
 
     def load(self, data: bytes) -> None:
-        """Replaces the contents of the map by those of a file's bytes."""
+        """Replaces the contents of the map by data, a file's bytes. FormatError for others."""
         data = raw(data, "data")
         with self._lock:
             self._check(lib.rdm_map_read(self._m, data, len(data)))
 
     def save_file(self, path: Union[str, os.PathLike[str]]) -> None:
-        """Writes a .bt or .ot file, by its ending, entirely or not at all."""
+        """Writes a .bt or .ot file at path, by its ending, entirely or not at all."""
         self._check(lib.rdm_map_write_file(self._open(), encoded(path, "path")))
 
     def load_file(self, path: Union[str, os.PathLike[str]]) -> None:
-        """Reads .bt or .ot."""
+        """Reads a .bt or .ot file at path."""
         with self._lock:
             self._check(lib.rdm_map_read_file(self._m, encoded(path, "path")))
 
@@ -214,7 +217,8 @@ class Map(Hinted):
 
 
 def sample_furthest(points: Any, wanted: int, start: int = 0) -> npt.NDArray[np.int32]:
-    """Farthest point sampling: the numbers of `wanted` of points [count][3], each the farthest from all chosen before."""
+    """Farthest point sampling: the numbers of `wanted` of points [count][3], each the farthest from all chosen before; start:
+    the first of them."""
     rows = _points(points)
     wanted, start = int32(wanted, "wanted"), int32(start, "start")
     chosen = np.empty(max(wanted, 0), np.int32)

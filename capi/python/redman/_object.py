@@ -61,7 +61,7 @@ class Object(_abi.ObjectInfo):
         return out
 
     def save(self, path: Union[str, os.PathLike[str]]) -> None:
-        """Writes an .object file, which load_object reads back the same to the last bit."""
+        """Writes an .object file at path, which load_object reads back the same to the last bit."""
         from ._importer import object_text
         write_whole(path, object_text(self.number), "object")
 

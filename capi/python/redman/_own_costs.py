@@ -86,7 +86,8 @@ class Rows(Hinted):
         return self.pool.num_envs
 
     def field(self, name: str) -> FloatArray:
-        """[n][count] a field of the observation in SI units: one with unit "5 m/s" is multiplied by 5. pool.fields lists all."""
+        """[n][count] the field `name` of the observation in SI units: one with unit "5 m/s" is multiplied by 5. pool.fields
+        lists all."""
         fields = self.pool._fields
         if not isinstance(name, str) or name not in fields:
             raise NotFoundError(f"field {name}: {self.pool.task.name} has none of that name{nearest(str(name), fields)}")
@@ -98,7 +99,7 @@ class Rows(Hinted):
         return part if scale == 1 else part * np.float32(scale)
 
     def speed(self, name: str) -> FloatArray:
-        """[n] the length of a field that is a vector, such as a velocity, in SI units."""
+        """[n] the length of the field `name` that is a vector, such as a velocity, in SI units."""
         length: FloatArray = np.linalg.norm(self.field(name), axis=1)
         return length
 

@@ -94,13 +94,13 @@ class Task:
     _number: ClassVar[Optional[int]] = None  # of the class itself, while it is registered
 
     def scene(self, s: SceneBuilder) -> None:
-        """Makes the world, once a pool; keep the numbers of its parts in self."""
+        """Makes the world by s, a SceneBuilder, once a pool; keep the numbers of its parts in self."""
 
     def reset(self, w: Worlds) -> None:
         """Starts episodes: the worlds are as scene made them. w.uniform and w.normal draw random numbers."""
 
     def control(self, w: Worlds, action: Any) -> None:
-        """Before a control step: from clipped actions [n][action_dim] to targets and pushes."""
+        """Before a control step: from the clipped action [n][action_dim] to targets and pushes."""
 
     def judge(self, w: Worlds) -> Any:
         """After a control step: a Verdict, or the rewards [n] alone. w.step [n] counts from 1."""
@@ -136,7 +136,7 @@ class Task:
 
 class RowTask(Task):
     """A task without bodies: a world is its state alone, and step computes the next one. Subclass it like Task, with step
-    instead of scene, control and judge.
+    instead of scene, control and judge; w is a Worlds of n rows.
 
         class Cart(redman.RowTask):
             action_dim, fields, costs = 1, {"position": 1, "velocity": 1}, {"fast": (1, "faster than 1 m/s")}
@@ -160,16 +160,16 @@ class RowTask(Task):
         cls.state = {**cls.state, "last_action": cls.action_dim}
 
     def scene(self, s: SceneBuilder) -> None:
-        """Adds one body that nothing moves, since an engine needs something to step."""
+        """Adds one body to s that nothing moves, since an engine needs something to step."""
         s.sphere("marker", 0.01, mass=0.01, weightless=True)
 
     def step(self, w: Worlds, action: Any) -> Any:
-        """Computes the next state of the worlds from clipped actions [n][action_dim]; returns a Verdict, or the rewards [n]
-        alone."""
+        """Computes the next state of the worlds w from the clipped action [n][action_dim]; returns a Verdict, or the rewards
+        [n] alone."""
         raise NotImplementedError(f"{type(self).__name__}.step must be defined: it makes the next state and returns the reward")
 
     def control(self, w: Worlds, action: Any) -> None:
-        """Keeps the action for step."""
+        """Keeps the action [n][action_dim] for step."""
         w.state["last_action"] = action
 
     def judge(self, w: Worlds) -> Any:

@@ -90,7 +90,8 @@ class Planner(Hinted):
         self._make(pool, {
             "policy": None if policy is None else policy_of(policy, pool.task), "agent": agent, "seed": seed,
             "num_threads": threads, "options": as_dict(options),
-            "noise": None if noise is None else given(noise, _abi.ROWS["rdm_planner_config"]["noise"], {"action_dim": pool.action_dim}, "noise", spread=True),
+            "noise": None if noise is None else given(noise, _abi.ROWS["rdm_planner_config"]["noise"],
+                                                      {"action_dim": pool.action_dim}, "noise", spread=True).copy(),
             "cost_limits": None if cost_limits is None else each_cost(cost_limits, usual, list(pool.costs), "cost_limits"),
             "stop": stop})
 
@@ -122,8 +123,8 @@ class Planner(Hinted):
         self._found = sized(_abi.rdm_plan_info)
 
     def act(self, env: int = 0, pool: Optional[Pool] = None) -> FloatArray:
-        """[action_dim] the best action for one world in its present state, in another pool of the same task and options if
-        one is given. StateError where no episode runs."""
+        """[action_dim] the best action for one world, env, in its present state, in another pool of the same task and options
+        if one is given. StateError where no episode runs."""
         where = self.pool if pool is None else instance(pool, Pool, "pool")
         action = np.empty(self.spec.action_dim, np.float32)
         with where._lock, self._lock, contextlib.nullcontext() if self._agent is None else self._agent._lock:

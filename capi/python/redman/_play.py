@@ -156,8 +156,8 @@ class Evaluation:
         return {q: list(map(float, np.quantile(costs, q, axis=0))) for q in _QUANTILES}
 
     def interval(self, stat: str, level: float = 0.95) -> Any:
-        """The interval (low, high) of return_mean, return_iqm, length_mean, success_rate or violation_rate, and one for each
-        column of cost_mean or cost_cvar.
+        """The interval (low, high) of a stat: of return_mean, return_iqm, length_mean, success_rate or violation_rate, and one
+        for each column of cost_mean or cost_cvar.
 
         Episodes are drawn with replacement, as many as there are, and the quantiles (1 - level) / 2 and (1 + level) / 2 of
         the resamples' values are its ends (percentile bootstrap, Efron, Tibshirani: An Introduction to the Bootstrap, 1993,

@@ -94,6 +94,8 @@ class Policy(Hinted):
     A policy decides every policy.info.action_repeat control steps; an actor holds its actions in between. act, and calling
     the policy, make one decision each, and the caller must hold the action. origin is what its run folder says: task,
     options, limits; evaluate and a notebook's picture use them.
+
+    Policy(data) takes the bytes of a file. obs and observation are [n][obs_dim], or [obs_dim] for one world.
     """
 
     _hints = {
@@ -117,8 +119,8 @@ class Policy(Hinted):
 
     @classmethod
     def load(cls, source: Union[str, os.PathLike[str], bytes, bytearray, memoryview]) -> Policy:
-        """Loads a policy file, a run folder's policy.rdm, or the bytes of a file. For a file in a run folder, origin is set
-        from the run, and the run's own task, robots and objects are loaded from the folder."""
+        """Loads a source: a policy file, a run folder's policy.rdm, or the bytes of a file. For a file in a run folder, origin
+        is set from the run, and the run's own task, robots and objects are loaded from the folder."""
         if isinstance(source, (bytes, bytearray, memoryview)):
             return cls(bytes(source))
         path = as_path(source, "source")
@@ -145,7 +147,7 @@ class Policy(Hinted):
         raise MissingFileError(f"policy of {name}: none in " + ", ".join(str(folder) for folder in policy_folders()))
 
     def save(self, path: Union[str, os.PathLike[str]]) -> None:
-        """Writes the policy file, entirely or not at all."""
+        """Writes the policy file at path, entirely or not at all."""
         write_whole(path, self._bytes, "policy")
 
     def export(self, path: Union[str, os.PathLike[str]], *, name: Optional[str] = None, int8: bool = False) -> None:
@@ -175,8 +177,8 @@ class Policy(Hinted):
         return tuple(names)
 
     def group(self, name: str) -> Policy:
-        """The policy of one group alone: it takes the same observations and gives its own entries of the action. Saved, it
-        is a policy file of its own, for the machine that moves this hand."""
+        """The policy of one group alone, by its name in groups: it takes the same observations and gives its own entries of the
+        action. Saved, it is a policy file of its own, for the machine that moves this hand."""
         names = self.groups
         if name not in names:
             raise NotFoundError(f"group {name}: unknown{nearest(name, names)}" if names else
@@ -192,9 +194,9 @@ class Policy(Hinted):
         """One decision: clip(mean + std noise, -1, 1) for one observation [obs_dim] or rows [n][obs_dim]; noise None: the mean.
 
         Hold it for info.action_repeat control steps; in a pool or an environment, actor() does that.
-        pool.step(policy.act(pool.obs)) at every step makes a different policy of it, and a HoldWarning says so. A policy
-        that reads points needs them too [n][num_points][3], with num_point_classes their classes, and where it reads colours
-        (point_color) these, as [n][num_points][3], 0 to 255.
+        pool.step(policy.act(pool.obs)) at every step makes a different policy of it, and a HoldWarning says so. A policy that
+        reads points needs them too [n][num_points][3], with num_point_classes their classes (point_class [n][num_points]), and
+        where it reads colours these (point_color [n][num_points][3]), 0 to 255.
 
         A policy with a memory (info.state_dim > 0) takes its state too and returns the next one:
         action, state = policy.act(obs, state), from policy.start(rows) on. With noise: policy.act(obs, noise, state=state).
@@ -326,7 +328,8 @@ class Policy(Hinted):
             if action.shape != shape:
                 raise ArgumentError(f"state: it has {len(action)} rows, but obs has {len(rows)}")
         if episode_start is not None:
-            begun = given(array_of(episode_start, "episode_start", bool), _STARTS, {"rows": len(rows)}, "episode_start", spread=True).view(bool)
+            starts = array_of(episode_start, "episode_start", bool)
+            begun = given(starts, _STARTS, {"rows": len(rows)}, "episode_start", spread=True).view(bool)
             left[begun], fresh[begun], memory[begun] = 0, True, 0
         due = left == 0
         if due.any():
@@ -394,8 +397,8 @@ class Policy(Hinted):
     def episode(self, task: Optional[_discovery.TaskName] = None, *, seed: int = 0, options: Optional[Options] = None,
                 steps: Optional[int] = None, shield: Shielding = None, shield_policy: Optional[Backup] = None) -> Episode:
         """Plays an episode by the mean action, with the options of the policy's run, and returns it as a redman.Episode, which
-        draws itself in a notebook. It is the episode of `redman render` with the same seed. options override those of the run;
-        steps: at most that many control steps; shield: as in redman.evaluate."""
+        draws itself in a notebook. It is the episode of `redman render` with the same seed. task: another task; options
+        override those of the run; steps: at most that many control steps; shield, shield_policy: as in redman.evaluate."""
         from ._play import episode_of
         return episode_of(self, task, seed=seed, options=options, steps=steps, shield=shield, shield_policy=shield_policy)
 
@@ -403,7 +406,7 @@ class Policy(Hinted):
                options: Optional[Options] = None, steps: Optional[int] = None, shield: Shielding = None,
                camera: Optional[str] = None, width: int = 640, height: int = 480, step: Optional[int] = None,
                strip: int = 6) -> None:
-        """Plays an episode and writes it to a file: .html, .glb, .png, .mp4 or .gif.
+        """Plays an episode and writes it to the file at path: .html, .glb, .png, .mp4 or .gif.
 
         task, seed, options, steps, shield: as in episode. camera: name of a camera of the task; None: "close", else the first.
         width, height: pixels of a picture or film. step: for .png, the control step that is shown; None: `strip` moments of the

@@ -86,9 +86,9 @@ def spec(task: _discovery.TaskName, options: Optional[Options] = None) -> _abi.S
 
 
 def check_task(task: _discovery.TaskName, options: Optional[Options] = None) -> None:
-    """Tests what a task must promise: the same bytes for the same seed, for any number of threads and after a saved state,
-    rows within their fields and bounds, costs of 0 or more. ArgumentError names function, step and entry of the first broken
-    promise. Takes seconds; for .task files and tasks of your own."""
+    """Tests what a task must promise: the same bytes for the same seed, for any number of threads and after a saved state, rows
+    within their fields and bounds, costs of 0 or more. ArgumentError names function, step and entry of the first broken
+    promise. Takes seconds; for .task files and tasks of your own. options: those of the task that is tried."""
     name = _discovery.task_name(task)
     settings = settings_of(named_options(as_dict(options)), _kinds(name) if options else {})
     check(lib.rdm_task_check(encoded(name, "task"), settings, _abi.rdm_stop(0), None, None, 0))
@@ -160,6 +160,8 @@ class Pool(Hinted):
     autoreset: what a step does with worlds that ended: "same_step" begins the next episode in it, "next_step" in the step
     that follows, "off" leaves it to reset(mask=...). ranks: this pool has the worlds of one process of several
     (redman.Ranks).
+
+    env, of the methods, is the number of a world, from 0; RangeError for another. Points and vectors are [3], world axes.
     """
 
     _hints = {
@@ -314,8 +316,8 @@ class Pool(Hinted):
             raise_kept()
 
     def watch(self, action: Any, centered: bool = False) -> None:
-        """Warns when an action comes directly from a policy at each of several steps, during which one action should be
-        held."""
+        """Warns when an action comes directly from a policy at each of several steps, during which one action should be held.
+        centered: these worlds add their center to it."""
         if LAST.array is not None:
             rows = self._rows
             ended = rows["terminated"][0] or rows["truncated"][0]  # the row is then the finished episode's
@@ -385,7 +387,7 @@ class Pool(Hinted):
         return self._of_step
 
     def baseline(self, kind: str = "hold") -> FloatArray:
-        """Fills pool.action with the actions of a simple baseline, "zero", "hold" or "random", and returns it."""
+        """Fills pool.action with the actions of a simple baseline, kind "zero", "hold" or "random", and returns it."""
         chosen = one_of(kind, _BASELINE, "kind")
         with self._lock:
             self._check(lib.rdm_pool_baseline(self._p, chosen))
@@ -394,7 +396,7 @@ class Pool(Hinted):
     # ---- state ------------------------------------------------------------------------------------------------
 
     def state(self, env: int = -1) -> bytes:
-        """The complete state of one world, or of all (-1)."""
+        """The complete state of one world, or of all (env -1)."""
         with self._lock:
             size = c_size_t()
             self._check(lib.rdm_pool_write_state(self._p, int32(env, "env"), None, 0, byref(size)))
@@ -403,7 +405,8 @@ class Pool(Hinted):
             return raw.raw
 
     def set_state(self, state: bytes, env: int = -1) -> None:
-        """Continues from state(), with the same bytes. Rewrites obs and clears the other rows of that world."""
+        """Continues from state(), with the same bytes. Rewrites obs and clears the other rows of that world. env -1: the state
+        is that of all worlds. FormatError for bytes of other worlds."""
         data = raw(state, "state")
         with self._lock:
             self._check(lib.rdm_pool_read_state(self._p, int32(env, "env"), data, len(data)))
@@ -422,7 +425,7 @@ class Pool(Hinted):
             self._starts = (self._starts[0] if recording is None else recording, share)
 
     def hash(self, env: int = -1) -> str:
-        """The hash of the state as the tool prints it, 16 hexadecimal digits."""
+        """The hash of the state of one world, or of all (env -1), as the tool prints it: 16 hexadecimal digits."""
         out = c_uint64()
         with self._lock:
             self._check(lib.rdm_pool_get_hash(self._p, int32(env, "env"), byref(out)))
@@ -442,8 +445,9 @@ class Pool(Hinted):
 
     def render(self, env: int = 0, camera: Optional[str] = None, width: int = 320, height: int = 240,
                what: str = "rgb", *, num_envs: int = 1, look: str = "fine") -> Array:
-        """A picture of one world: rgb [height][width][3] bytes; depth [height][width] in m, 0 where nothing is;
-        segmentation [height][width], the number of a shape or -1. camera None: the task's first.
+        """A picture of one world. what: "rgb" [height][width][3] bytes; "depth" [height][width] in m, 0 where nothing is;
+        "segmentation" [height][width], the number of a shape or -1. camera: its name; None: the task's first. width, height:
+        pixels, 1 to 8192.
 
         num_envs: worlds side by side in one scene, from env on, with the camera moved back until all are in sight; shape i of
         world env + k is k * len(shapes) + i. look: "fine", for people, or "plain", as observations look, in half the time."""
@@ -519,7 +523,7 @@ class Pool(Hinted):
         return out
 
     def hull(self, shape: int) -> FloatArray:
-        """[count][3] corners of a shape that is a hull, in its own frame, m."""
+        """[count][3] corners of a shape that is a hull, in its own frame, m. shape: its number in pool.shapes."""
         count = c_size_t()
         self._check(lib.rdm_pool_get_hull(self._open(), int32(shape, "shape"), None, 0, byref(count)))
         out = np.empty((count.value, 3), np.float32)
@@ -553,8 +557,8 @@ class Pool(Hinted):
         return out
 
     def set_joints(self, env: int, q: Optional[npt.ArrayLike] = None, qd: Optional[npt.ArrayLike] = None) -> None:
-        """Sets positions and velocities of the joints of one world; None: unchanged. NaN for a coupled joint: what follows
-        from the joint that it is coupled to.
+        """Sets positions q and velocities qd [num_joints] of the joints of one world, rad and rad/s (m and m/s); None:
+        unchanged. NaN for a coupled joint: what follows from the joint that it is coupled to.
 
         Rewrites obs and clears the other rows of that world, as set_state does."""
         kinds, lengths = _abi.FUNCTIONS["rdm_pool_set_joints"].rows, {"count": self.spec.num_joints}
@@ -574,7 +578,8 @@ class Pool(Hinted):
 
     def raycast(self, env: int, origin: Sequence[float], direction: Sequence[float],
                 range: float = math.inf) -> Optional[_abi.RayHit]:
-        """The nearest shape that a ray hits within `range` m, with distance, point and normal; None if there is none."""
+        """The nearest shape that a ray from origin, m, along direction hits within `range` m, with distance, point and normal;
+        None if there is none. direction need not have length 1."""
         kinds = _abi.FUNCTIONS["rdm_pool_raycast"].rows
         rows = [given(row, kinds[name], {}, name) for name, row in (("origin", origin), ("direction", direction))]
         hit = sized(_abi.rdm_ray_hit)
@@ -596,7 +601,8 @@ class Pool(Hinted):
                 out = np.empty(count.value, out.dtype)
 
     def push(self, env: int, shape: Union[int, str], force: Sequence[float]) -> None:
-        """Pushes the body or link that has a shape during the next step: force in N (world axes) at its centre of mass."""
+        """Pushes the body or link that has a shape during the next step: force in N (world axes) at its centre of mass. shape:
+        its number or name."""
         if isinstance(shape, str):
             names = [row.name for row in self._shapes]
             if shape not in names:
@@ -742,7 +748,7 @@ class Pool(Hinted):
     # ---- copies -----------------------------------------------------------------------------------------------
 
     def copy(self, src: int, dst: int, other: Optional[Pool] = None) -> None:
-        """Puts world dst into the state of world src of this pool, or of another one of the same task and options."""
+        """Puts world dst into the state of world src of this pool, or of another one of the same task and options (other)."""
         source = self if other is None else instance(other, Pool, "other")
         first, second = sorted((self, source), key=id)
         with first._lock, second._lock:

@@ -44,6 +44,9 @@ class Recording(Hinted):
     agent.clone(recording) fits an agent to it, agent.recording = recording keeps an agent near it while it learns,
     pool.set_starts(recording) begins episodes at its states, which are kept at every state_stride-th row of an episode. Its
     arrays (obs, action, reward, ...) are copies: read them once, not in a loop.
+
+    Without a pool: cost_dim is the number of costs; task, layout_hash and state_bytes are those of the worlds, "" and 0 where
+    they have none; num_points and point_color say what clouds the rows have. capacity: rows whose memory is taken at once.
     """
 
     _hints = {
@@ -87,7 +90,7 @@ class Recording(Hinted):
 
     @classmethod
     def load(cls, path: Union[str, os.PathLike[str]]) -> Recording:
-        """Reads an .npz file that save, numpy.savez or `redman rollout --record` wrote."""
+        """Reads the .npz file at path that save, numpy.savez or `redman rollout --record` wrote."""
         must_exist(path, "recording")
         out = cls.__new__(cls)
         out._stride = 8
@@ -95,7 +98,7 @@ class Recording(Hinted):
         return out
 
     def save(self, path: Union[str, os.PathLike[str]]) -> None:
-        """Writes an .npz file, entirely or not at all."""
+        """Writes an .npz file at path, entirely or not at all."""
         with self._lock:
             check(lib.rdm_recording_write_file(self._handle.value, encoded(path, "path")))
 
@@ -115,7 +118,7 @@ class Recording(Hinted):
         self.end_step(pool, mask)
 
     def begin_step(self, pool: Pool, label: Any = None, mask: Any = None) -> None:
-        """The first half of step: before pool.step."""
+        """The first half of step, with the same label and mask: before pool.step."""
         rows = _abi.FUNCTIONS["rdm_recording_begin_step"].rows
         meant = None if label is None else given(label, rows["label"], instance(pool, Pool, "pool")._lengths, "label")
         chosen = instance(pool, Pool, "pool")._mask(mask)
@@ -123,7 +126,7 @@ class Recording(Hinted):
             check(lib.rdm_recording_begin_step(self._handle.value, pool._open(), address(meant), address(chosen)))
 
     def end_step(self, pool: Pool, mask: Any = None) -> None:
-        """The second half of step: after pool.step."""
+        """The second half of step, with the same mask: after pool.step."""
         chosen = instance(pool, Pool, "pool")._mask(mask)
         with pool._lock, self._lock:
             check(lib.rdm_recording_end_step(self._handle.value, pool._open(), address(chosen)))
@@ -132,10 +135,12 @@ class Recording(Hinted):
                reward: Any = None, cost: Any = None, terminated: Any = None, truncated: Any = None, success: Any = None,
                episode: Any = None, points: Any = None, point_class: Any = None, point_color: Any = None,
                state_row: Any = None, state: Any = None) -> None:
-        """Adds all rows of another recording, or rows from arrays: at least obs [n][obs_dim] and action [n][action_dim].
+        """Adds all rows of another recording (other), or rows from arrays: at least obs [n][obs_dim] and action
+        [n][action_dim].
 
-        label None: as action; reward, cost None: 0. episode [n] numbers the episodes from 0; None: each end begins one.
-        points [n][num_points][3] are whole mm. state [m][state_bytes] are those before the rows state_row [m].
+        label None: as action; reward, cost None: 0. terminated, truncated and success are flags [n]. episode [n] numbers the
+        episodes from 0; None: each end begins one. points [n][num_points][3] are whole mm, with their point_class
+        [n][num_points] and point_color [n][num_points][3]. state [m][state_bytes] are those before the rows state_row [m].
         """
         if other is not None:
             instance(other, Recording, "other", "; arrays are append(obs=..., action=...)")
@@ -148,7 +153,8 @@ class Recording(Hinted):
         said = {"obs": obs, "action": action, "label": label, "reward": reward, "cost": cost, "terminated": terminated,
                 "truncated": truncated, "success": success, "episode": episode, "points": points,
                 "point_class": point_class, "point_color": point_color, "state_row": state_row, "state": state}
-        lengths = self._lengths(len(np.atleast_2d(array_of(obs, "obs"))), 0 if state_row is None else array_of(state_row, "state_row").size)
+        states = 0 if state_row is None else array_of(state_row, "state_row").size
+        lengths = self._lengths(len(np.atleast_2d(array_of(obs, "obs"))), states)
         table = _abi.ROWS["rdm_recording_rows"]
         kept = {name: given(value, table[name], lengths, name) for name, value in said.items() if value is not None}
         struct = sized(_abi.rdm_recording_rows)

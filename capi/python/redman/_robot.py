@@ -132,8 +132,8 @@ class Robot(_abi.Robot):
         return joints if found.value else None
 
     def mounted(self, hand: RobotName, name: str, *, yaw: float = 0.0, adapter: float = 0.0, left: bool = False) -> Robot:
-        """This arm with a hand on its flange, as a robot of its own: the hand is rotated by yaw (rad) about the flange's z
-        and moved out by adapter (m); left: its mirror image."""
+        """This arm with a hand on its flange, as a robot of its own under a new name: the hand is rotated by yaw (rad) about
+        the flange's z and moved out by adapter (m); left: its mirror image."""
         out = c_int32()
         check(lib.rdm_robot_create_mounted(byref(out), encoded(name, "name"), self.number, robot(hand).number,
                                             real(yaw, "yaw"), real(adapter, "adapter"), flag(left, "left")))
@@ -146,7 +146,7 @@ class Robot(_abi.Robot):
         return _notes.get(self.number, ())
 
     def save(self, path: Union[str, os.PathLike[str]]) -> None:
-        """Writes a .robot file, which load_robot reads back the same to the last bit."""
+        """Writes a .robot file at path, which load_robot reads back the same to the last bit."""
         from ._importer import robot_text
         write_whole(path, robot_text(self.number), "robot")
 

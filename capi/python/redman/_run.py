@@ -100,7 +100,7 @@ class Run(Hinted):
         return self.curve
 
     def save(self, path: Union[str, os.PathLike[str]]) -> None:
-        """Writes the policy file; train(..., out="runs/first") writes a whole run folder."""
+        """Writes the policy file at path; train(..., out="runs/first") writes a whole run folder."""
         self.policy.save(path)
 
     @classmethod
@@ -131,7 +131,7 @@ class Run(Hinted):
         return self.policy.episode(**settings)
 
     def render(self, path: Union[str, os.PathLike[str]], **settings: Any) -> None:
-        """Plays an episode of its policy and writes it to a file: .html, .glb, .png, .mp4 or .gif (Policy.render)."""
+        """Plays an episode of its policy and writes it to the file at path: .html, .glb, .png, .mp4 or .gif (Policy.render)."""
         self.policy.render(path, **settings)
 
     def judged(self) -> Evaluation:

@@ -30,8 +30,9 @@ class SceneBuilder(Hinted):
             self.touch = s.touch("hand", "ball")
             self.tip = s.find("link", "hand_ff_distal")
 
-    Poses are [x, y, z], m, or [x, y, z, qx, qy, qz, qw]. The error for a wrong name offers the nearest one. Everything must
-    be added before the first find, touch or joint.
+    pose is [x, y, z], m, or [x, y, z, qx, qy, qz, qw]; name is that of the part in this scene; mass is in kg; a and b are names
+    of materials. The error for a wrong name offers the nearest one. Everything must be added before the first find, touch or
+    joint.
     """
 
     options: Mapping[str, Any]  # values of the task's own options in this pool; (low, high) where one is a range
@@ -41,7 +42,7 @@ class SceneBuilder(Hinted):
         self.options = Told(options, "Pool(task, options={...})")
 
     def option(self, key: str) -> Any:
-        """The value of an option in this pool: a number, a text, or (low, high) of a range."""
+        """The value of the option `key` in this pool: a number, a text, or (low, high) of a range."""
         if key in self.options:
             return self.options[key]
         value = c_double()
@@ -68,15 +69,16 @@ class SceneBuilder(Hinted):
         return self._one(name, "box", size, mass, pose, more)
 
     def capsule(self, name: str, radius: float, half_length: float, mass: float, pose: Any = (0, 0, 0), **more: Any) -> int:
-        """A free capsule along z; radius and half of the length between the centres of its ends, m."""
+        """A free capsule along z; radius and half_length, half of the length between the centres of its ends, m."""
         return self._one(name, "capsule", [radius, half_length], mass, pose, more)
 
     def cylinder(self, name: str, radius: float, half_length: float, mass: float, pose: Any = (0, 0, 0), **more: Any) -> int:
-        """A free cylinder along z; radius and half of its length, m."""
+        """A free cylinder along z; radius and half_length, half of its length, m."""
         return self._one(name, "cylinder", [radius, half_length], mass, pose, more)
 
     def object(self, object_name: str, name: Optional[str] = None, pose: Any = (0, 0, 0), scale: float = 1.0) -> int:
-        """One of redman.objects(), or the file of one, as a free body; name: its name in this scene."""
+        """One of redman.objects() by its object_name, or the file of one, as a free body; name: its name in this scene, None:
+        as it is called; scale: of its lengths."""
         from ._object import objects
         from ._paths import named
         out, at, called = c_int32(), pose_of(pose), named("object", object_name)
@@ -126,8 +128,9 @@ class SceneBuilder(Hinted):
             self.friction(name, other, mu)
 
     def friction(self, a: str, b: str, mu: Optional[float]) -> None:
-        """The coefficient of friction between two materials, 1 unless set; None: they pass through each other."""
-        check(lib.rdm_scene_set_friction(self._scene(), encoded(a, "a"), encoded(b, "b"), -1.0 if mu is None else real(mu, "mu")))
+        """The coefficient of friction mu between two materials, 1 unless set; None: they pass through each other."""
+        value = -1.0 if mu is None else real(mu, "mu")
+        check(lib.rdm_scene_set_friction(self._scene(), encoded(a, "a"), encoded(b, "b"), value))
 
     def contact_law(self, a: str, b: str, **law: float) -> None:
         """Contacts of two materials, apart from their friction: restitution, torsional, rolling, time_constant,
@@ -138,8 +141,9 @@ class SceneBuilder(Hinted):
         check(lib.rdm_scene_set_contact_law(self._scene(), encoded(a, "a"), encoded(b, "b"), byref(row)))
 
     def gravity(self, g: Sequence[float]) -> None:
-        """Gravity [3], m/s2, instead of the option's."""
-        check(lib.rdm_scene_set_gravity(self._scene(), (c_double * 3)(*given(g, _abi.FUNCTIONS["rdm_scene_set_gravity"].rows["gravity"], {}, "g"))))
+        """Gravity g [3], m/s2, instead of the option's."""
+        row = given(g, _abi.FUNCTIONS["rdm_scene_set_gravity"].rows["gravity"], {}, "g")
+        check(lib.rdm_scene_set_gravity(self._scene(), (c_double * 3)(*row)))
 
     def adjustable(self) -> None:
         """Allows Worlds.set_factors: masses, gains and friction of each world's own."""
@@ -152,13 +156,13 @@ class SceneBuilder(Hinted):
     # --- numbers that follow from options
 
     def field(self, name: str, count: int) -> None:
-        """Sets another count of entries for a field of the observation in this pool."""
+        """Sets another count of entries for the field `name` of the observation in this pool."""
         check(lib.rdm_scene_set_field(self._scene(), encoded(name, "name"), int32(count, "count")))
 
     # --- what is there
 
     def find(self, part: str, name: str) -> int:
-        """The number of a "robot", "body", "link", "joint", "shape", "sensor" or "material" by its name."""
+        """The number of a part, "robot", "body", "link", "joint", "shape", "sensor" or "material", by its name."""
         out = c_int32()
         check(lib.rdm_scene_find(self._scene(), one_of(part, _PARTS, "part"), encoded(name, "name"), byref(out)))
         return out.value

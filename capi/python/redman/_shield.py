@@ -66,7 +66,8 @@ class Shield(Hinted):
     Where it is more than 1, call act once every `steps` steps and hold its action in between.
     budgets: bounds on the sum of each cost over an episode, given like Agent's cost_limits; None: the cost is ignored.
     Column 0 has 0 unless given.
-    options: `redman.shield_options()` lists them with their help. threads: of the copies; 0: as many as the pool has.
+    options: `redman.shield_options()` lists them with their help. threads: of the copies; 0: as many as the pool has. seed: of the
+    noise that it tries. env, of the methods, is the number of a world, from 0.
 
     An exact copy knows the random numbers that its world will draw, so for a real robot the proof holds for the model alone;
     option copies tries each plan in several copies with random numbers of their own. When nothing that was tried keeps the
@@ -131,8 +132,8 @@ class Shield(Hinted):
             return len(self._guards) - 1
 
     def set_guard(self, env: int, i: int, normal: Any, bound: float) -> None:
-        """Sets guard i of those that were added, for one world from now on, such as a model predicts it for the world's
-        state. The world's plan is forgotten if the guard changed."""
+        """Sets guard i of those that were added to normal [action_dim] . action <= bound, for one world from now on, such as a
+        model predicts it for the world's state. The world's plan is forgotten if the guard changed."""
         row, bound = self._normal("rdm_shield_set_guard", normal), real(bound, "bound")
         with self._lock:
             check(lib.rdm_shield_set_guard(self._handle.value, int32(env, "env"), int32(i, "i"), row.ctypes.data, bound))

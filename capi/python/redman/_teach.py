@@ -54,10 +54,11 @@ class Taught:
               seed: int = 0, feed_normalizer: bool = True) -> CloneReport:
         """Behaviour cloning: fits the actor's mean to the labels of a recording; critics and multipliers stay.
 
-        epochs: passes over the rows, at most; patience: ends after this many epochs without a better validation loss, 0:
-        never; the learning rate falls linearly to learning_rate_end; validation: the share of rows, in whole episodes, held
-        back for validation; action_std: the standard deviation of actions afterwards, 0: unchanged; feed_normalizer: first
-        sets the statistics of observations to the recording's. Ctrl-C and cancel leave the agent as it was.
+        epochs: passes over the rows, at most; batch_rows: rows of a gradient step; patience: ends after this many epochs
+        without a better validation loss, 0: never; learning_rate falls linearly to learning_rate_end; validation: the share of
+        rows, in whole episodes, held back for validation; action_std: the standard deviation of actions afterwards, 0:
+        unchanged; feed_normalizer: first sets the statistics of observations to the recording's; seed: of the order of the
+        rows. Ctrl-C and cancel leave the agent as it was.
         """
         instance(recording, Recording, "recording", _READ)
         how = sized(_abi.rdm_clone_config)
@@ -109,9 +110,9 @@ class Taught:
             self._check(lib.rdm_agent_set_policy(self._a, taken._open(), samples))
 
     def values(self, obs: Any) -> tuple[FloatArray, FloatArray]:
-        """The critics' predictions for observations [n][obs_dim], or for one [obs_dim]: the discounted sum of future rewards
-        [n], and that of each cost [n][cost_dim], 0 for a cost that the agent does not limit. UnsupportedError with options
-        normalize_reward or normalize_cost, under which critics have no unit."""
+        """The critics' predictions for obs, observations [n][obs_dim], or for one [obs_dim]: the discounted sum of future
+        rewards [n], and that of each cost [n][cost_dim], 0 for a cost that the agent does not limit. UnsupportedError with
+        options normalize_reward or normalize_cost, under which critics have no unit."""
         seen = array_of(obs, "obs")
         if seen.ndim not in (1, 2) or seen.shape[-1] != self.obs_dim:
             raise wrong_shape("obs", seen.shape, f"(rows, {self.obs_dim})")
@@ -129,7 +130,9 @@ class Taught:
                  epochs: int = 20, batch_rows: int = 16, learning_rate: float = 1e-3, validation: float = 0.1,
                  seed: int = 0) -> _abi.PretrainReport:
         """Trains the encoder to classify the points of clouds [rows][num_points][3] by label [rows][num_points], each below
-        num_labels; nothing else changes. epochs: passes over the clouds. StateError without option encoder."""
+        num_labels; nothing else changes. point_class [rows][num_points] and point_color [rows][num_points][3], 0 to 255, where
+        the encoder reads them. epochs: passes over the clouds; batch_rows: clouds of a gradient step; learning_rate: of the
+        steps; validation: the share of clouds held back; seed: of their order. StateError without option encoder."""
         points = array_of(points, "points")
         rows = len(points) if points.ndim else 0
         cloud, kept = clouds(points, point_class, point_color, rows)

@@ -137,10 +137,11 @@ def train(task: Any = None, algo: Any = "ppo_lag", steps: Optional[float] = None
     of a module, and the class of a task, by their import paths; lambdas must be given again.
 
     out: a run folder to write, which `redman eval`, `plot`, `report` and `train --resume` can read, with the curve for
-    TensorBoard (tensorboard=False leaves it out). The texts of a .task file and of robots and objects of your own are kept
-    in the folder, so that it is complete. task_file: the .task file of a task that was registered in another way. resume: a
-    run folder, also one of the command, to continue as if the run had never been interrupted. Its settings are those of the
-    folder; steps, threads, time_budget, callback, progress and the functions may be given.
+    TensorBoard (tensorboard=False leaves it out). overwrite: replaces a run that is there. checkpoint_every: epochs from one
+    checkpoint to the next. The texts of a .task file and of robots and objects of your own are kept in the folder, so that it
+    is complete. task_file: the .task file of a task that was registered in another way. resume: a run folder, also one of the
+    command, to continue as if the run had never been interrupted. Its settings are those of the folder; steps, threads,
+    time_budget, callback, progress and the functions may be given.
 
     from_: where the policy starts. A policy, its file or run folder, or "trained" gives the network; options of the task
     that its run had are used unless others are given. A recording or its file (.npz) is imitated first, and so is a script

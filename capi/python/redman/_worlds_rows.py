@@ -30,8 +30,8 @@ _UNIT_Q = np.array([0.0, 0.0, 0.0, 1.0])
 class Worlds:
     """n worlds within a call of a task's function. Each array has a row for each of them; it is a copy, which cannot be written.
 
-    Positions are in m, quaternions (x, y, z, w), velocities in m/s and rad/s, forces in N. Parts are given by the numbers
-    that SceneBuilder returned. In observe nothing can be set.
+    Positions p are in m, quaternions q (x, y, z, w), velocities v and w in m/s and rad/s, force in N, torque in N m. Parts are
+    given by the numbers that SceneBuilder returned. In observe nothing can be set.
     """
 
     __slots__ = ("n", "step", "_worlds", "_randoms", "_stride", "_results", "_seen", "_states", "_array", "_count")
@@ -82,7 +82,7 @@ class Worlds:
         return self._joints(Quantity.TORQUE)
 
     def joint(self, i: int) -> Any:
-        """[n] the coordinate of one joint."""
+        """[n] the coordinate of joint i, rad (m)."""
         return self._get(Quantity.Q, i)[:, 0]
 
     def position(self, body: int) -> Any:
@@ -118,7 +118,7 @@ class Worlds:
         return self._get(Quantity.SHAPE, shape)
 
     def sensor(self, sensor: int) -> Any:
-        """[n][6] contact force and torque on a fingertip, mean over the step, in the link's frame."""
+        """[n][6] contact force and torque on the fingertip of a sensor, mean over the step, in the link's frame."""
         return self._get(Quantity.SENSOR, sensor)
 
     def touching(self, group: int) -> Any:
@@ -193,8 +193,8 @@ class Worlds:
         self._set(Quantity.LINK_PUSH, link, self._pair(force, point), 6)
 
     def set_factors(self, what: int, index: int, factor: Any, other: int = 0) -> None:
-        """Scales a constant of the scene, redman.Scale, by a factor [n] in each world until its episode ends; needs
-        SceneBuilder.adjustable."""
+        """Scales a constant of the scene by a factor [n] in each world until its episode ends; needs SceneBuilder.adjustable.
+        what: a redman.Scale; index: the number of the part that has it; other: of the second material of a friction."""
         row = _abi.rdm_factor(what=int(what), index=index, other=other)
         for i, value in enumerate(np.broadcast_to(factor, (self.n,))):
             row.factor = float(value)

@@ -82,7 +82,8 @@ class Training(Hinted):
 
 
 class Callback:
-    """Base class of callbacks. Override any of its functions."""
+    """Base class of callbacks. Override any of its functions. training is the redman.Training that calls, epoch the
+    redman.Epoch that has ended."""
 
     def on_begin(self, training: Training) -> Any:
         """Is called before the first epoch, also when a run is resumed. A true result ends the run."""
@@ -218,8 +219,9 @@ class TensorBoard(Callback):
 
 
 class View(Callback):
-    """Opens a window in the browser, redman.view, on the policy as it is after each epoch: it plays in worlds of its own, with the
-    options of the run, while somebody looks. train(view=True) is this callback with its defaults."""
+    """Opens a window in the browser, redman.view, on the policy as it is after each epoch: it plays in worlds of its own, with
+    the options of the run, while somebody looks. train(view=True) is this callback with its defaults. num_envs: worlds that it
+    plays in; browser: opens it in one; port: of its address, 0: any that is free."""
 
     def __init__(self, num_envs: int = 1, browser: bool = True, port: int = 0) -> None:
         self._num_envs, self._browser, self._port = num_envs, browser, port
@@ -243,8 +245,8 @@ class View(Callback):
 
 
 class WandB(Callback):
-    """Sends the curve to Weights & Biases. settings: arguments of wandb.init; its config has the settings of the run. A run of
-    wandb that is already active is used, and stays open."""
+    """Sends the curve to Weights & Biases, as a run of project. settings: arguments of wandb.init; its config has the settings
+    of the run. A run of wandb that is already active is used, and stays open."""
 
     def __init__(self, project: Optional[str] = None, **settings: Any) -> None:
         self._wandb = _module("wandb")
@@ -265,8 +267,8 @@ class WandB(Callback):
 
 
 class MLflow(Callback):
-    """Sends settings and curve to MLflow as parameters and metrics. settings: arguments of mlflow.start_run. A run of MLflow that
-    is already active is used, and stays open."""
+    """Sends settings and curve to MLflow as parameters and metrics, as a run of experiment. settings: arguments of
+    mlflow.start_run. A run of MLflow that is already active is used, and stays open."""
 
     def __init__(self, experiment: Optional[str] = None, **settings: Any) -> None:
         self._mlflow = _module("mlflow")

@@ -95,12 +95,12 @@ def _completed(given: Arrays, what: str) -> Arrays:
 
 
 def unfinished(arrays: Arrays) -> list[int]:
-    """The episodes without an end: their last row is neither terminated nor truncated."""
+    """The episodes of the arrays of a set without an end: their last row is neither terminated nor truncated."""
     return [int(e) for e in np.flatnonzero(~_ends(arrays)[arrays["episode_begin"][1:] - 1])]
 
 
 def without(arrays: Arrays, episodes: list[int]) -> Arrays:
-    """The set without these episodes."""
+    """The arrays of a set without these episodes."""
     keep = ~np.isin(arrays["episode"], episodes)
     stay = ~np.isin(np.arange(len(arrays["episode_begin"]) - 1), episodes)
     out = dict(arrays)
@@ -114,7 +114,7 @@ def without(arrays: Arrays, episodes: list[int]) -> Arrays:
 
 
 def hash(arrays: Arrays) -> str:
-    """Of the numbers alone, 16 hexadecimal digits, as `redman data info` prints it."""
+    """The hash of the numbers of the arrays of a set alone, 16 hexadecimal digits, as `redman data info` prints it."""
     arrays = _completed(arrays, "data")
     value = 14695981039346656037
 
@@ -280,8 +280,9 @@ def _load_minari(path: FilePath) -> Arrays:
 # ---- any ------------------------------------------------------------------------------------------------------------
 
 def load(path: FilePath) -> Arrays:
-    """The arrays of a set: obs, action, reward, cost [rows][costs], terminated, truncated, success, episode, episode_begin, and
-    where it has them label, final_obs, source, metadata, task, layout_hash. The form follows from the name."""
+    """The arrays of the set at path: obs, action, reward, cost [rows][costs], terminated, truncated, success, episode,
+    episode_begin, and where it has them label, final_obs, source, metadata, task, layout_hash. The form follows from the
+    name."""
     kind = _kind(path)
     must_exist(path, "data set")
     if kind == "mcap":
@@ -293,7 +294,8 @@ def load(path: FilePath) -> Arrays:
 
 
 def save(arrays: Arrays, path: FilePath) -> None:
-    """Writes a set in the form that follows from the name: .npz, .hdf5 or .h5 (D4RL and DSRL), .minari and .lerobot (folders), .mcap."""
+    """Writes the arrays of a set to path, in the form that follows from the name: .npz, .hdf5 or .h5 (D4RL and DSRL), .minari
+    and .lerobot (folders), .mcap."""
     kind = _kind(path)
     arrays = _completed(arrays, "data")
     if kind == "mcap":
@@ -306,8 +308,8 @@ def save(arrays: Arrays, path: FilePath) -> None:
 
 
 def convert(source: FilePath, target: FilePath, keep_unfinished: bool = False) -> dict[str, Any]:
-    """Reads one form and writes another; returns what was written. Episodes without an end are left out and listed in
-    left_out, unless keep_unfinished."""
+    """Reads the set at source in its form and writes it to target in another; returns what was written. Episodes without an end
+    are left out and listed in left_out, unless keep_unfinished."""
     arrays = load(source)
     left_out = [] if keep_unfinished else unfinished(arrays)
     if left_out:
@@ -318,8 +320,9 @@ def convert(source: FilePath, target: FilePath, keep_unfinished: bool = False) -
 
 
 def score(ret: float, cost: float, low: float, high: float, limit: float) -> tuple[float, float]:
-    """Normalised return and cost of a policy: (R - low) / (high - low) by the least and largest return of the data set's
-    episodes (return_min and return_max of its metadata), and C / limit, which is at most 1 for a safe policy."""
+    """Normalised return and cost of a policy with mean return `ret` = R: (R - low) / (high - low) by the least and largest
+    return of the data set's episodes (return_min and return_max of its metadata), and C / limit, which is at most 1 for a safe
+    policy."""
     if not high > low:
         raise ArgumentError(f"high: {high} is not above low, {low}")
     if not limit > 0:

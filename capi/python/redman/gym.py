@@ -187,6 +187,8 @@ class Env(_Named, _Env):
     center: what an action of 0 does; "initial": the pose with which the task's own learner begins.
     shield: True, or a dict of the options of a redman.Shield, its budgets, seed and threads. shield_policy: its first
     backup, a policy, its file or run folder, or "trained"; it must hold its actions for as many control steps as a step has.
+    render_mode: what render() returns, "rgb_array", "depth_array", or those with "_list"; None: nothing. camera: its name; None: the
+    task's first. width, height: pixels of a picture.
     named: observations are a dict with an entry for each field.
     observe: what an observation has, of "state", "rgb", "depth", "segmentation", "points" and "voxels", as a list or joined by +:
     option modality in other words. Without "state" it has no row.
@@ -210,7 +212,7 @@ class Env(_Named, _Env):
         return self._seen(self.worlds.obs[0].copy(), 0), self._began_of(0)
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, Info]:
-        """Observation, reward, terminated, truncated, info."""
+        """Observation, reward, terminated, truncated, info, after an action [action_dim]."""
         w = self.worlds
         w.act_alone(action)
         w.pool.step()
@@ -285,7 +287,7 @@ class VectorEnv(_Named, _VectorEnv):
         return self._observed(), self._rows(self._told_but(began), began)
 
     def step(self, actions: Any) -> tuple[Any, Array, Array, Array, Info]:
-        """Observations, rewards, terminated, truncated, infos."""
+        """Observations, rewards, terminated, truncated, infos, after actions [num_envs][action_dim]."""
         w = self.worlds
         w.act(actions)
         w.pool.step()

@@ -107,7 +107,8 @@ def _table(result: Evaluation) -> list[str]:
 def save(given: Shown, folder: Union[str, os.PathLike[str]], evaluation: Optional[Evaluation] = None,
          repository: str = "USER/NAME") -> Path:
     """Writes what push would upload into a new folder: README.md (the card), policy.rdm and, of a run, config.json and
-    progress.csv. Returns the folder. Paths of this machine that config.json holds go with it: read it first."""
+    progress.csv. Returns the folder. given: a run, its folder, or a policy; evaluation: that the card shows, None: a new one;
+    repository: the "user/name" that it names. Paths of this machine that config.json holds go with it: read it first."""
     shown, path = _shown(given), Path(folder)
     if path.exists() and (not path.is_dir() or any(path.iterdir())):
         raise StateError(f"hub.save: {path} is there already: give the name of a new folder")
@@ -126,7 +127,8 @@ def push(given: Shown, repository: str, *, evaluation: Optional[Evaluation] = No
          message: str = "redman: a policy with its card") -> str:
     """Uploads a run or a policy to "user/name", which is made if it does not exist, and returns the address of its page.
 
-    token: of the account; else the one that `huggingface-cli login` has kept.
+    given, evaluation: as in save. repository: "user/name". private: for the account alone. message: of the upload. token: of
+    the account; else the one that `huggingface-cli login` has kept.
     """
     _named(repository)
     client = _client()
@@ -142,8 +144,9 @@ def pull(repository: str, *, revision: Optional[str] = None, token: Optional[str
     """Downloads a policy of "user/name" and loads it. policy.origin has the task, its options and its limits where a run was
     pushed; files of its own task, robots and objects are part of it.
 
-    revision: a branch, a tag or a commit. imports: whether modules of this machine may be imported by the names that the
-    repository gives for rewards, costs and tasks in Python; without it, such a repository is refused.
+    revision: a branch, a tag or a commit. token: of the account, for a private one. imports: whether modules of this machine
+    may be imported by the names that the repository gives for rewards, costs and tasks in Python; without it, such a repository
+    is refused.
     """
     _named(repository)
     folder = Path(_client().snapshot_download(repository, revision=revision, token=token, allow_patterns=list(_SHARED)))

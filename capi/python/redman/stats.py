@@ -53,9 +53,9 @@ def iqm(scores: Scores) -> float:
 
 
 def interval(scores_by_task: Scores, level: float = 0.95) -> tuple[float, float]:
-    """The interval of iqm(): runs are drawn with replacement within each task, as many as it has, and the quantiles
-    (1 - level) / 2 and (1 + level) / 2 of the resamples' interquartile means are its ends (stratified bootstrap, Agarwal et al.
-    2021, section 4.1).
+    """The interval of iqm() of scores_by_task: runs are drawn with replacement within each task, as many as it has, and the
+    quantiles (1 - level) / 2 and (1 + level) / 2 of the resamples' interquartile means are its ends (stratified bootstrap,
+    Agarwal et al. 2021, section 4.1).
 
     Each task needs 2 runs or more. With fewer than about 5 runs of few tasks the interval is too narrow.
     """
@@ -75,8 +75,9 @@ def improvement(a: Scores, b: Scores, level: float = 0.95) -> Improvement:
         P(A > B) = 1 / M  sum over tasks m of  1 / (N K)  sum over runs i, j of  S(a_mi, b_mj)
         S(x, y) = 1 where x > y, 1/2 where x = y, 0 where x < y
 
-    with M tasks, N and K runs: the Mann-Whitney statistic of each task (Mann, Whitney: Ann. Math. Statist. 18, 1947; Agarwal
-    et al. 2021, section 4.3). It says how often a is better, not by how much. If the interval is above 1/2, a is better.
+    with M tasks, N and K runs: the Mann-Whitney statistic of each task (Mann, Whitney: Ann. Math. Statist. 18, 1947; Agarwal et
+    al. 2021, section 4.3). It says how often a is better, not by how much. If the interval is above 1/2, a is better. level: as
+    in interval().
     """
     ours, theirs = _of_several(a, "a"), _of_several(b, "b")
     _need_same(ours, theirs, "a", "b")
@@ -96,7 +97,7 @@ def improvement(a: Scores, b: Scores, level: float = 0.95) -> Improvement:
 
 def difference(a: Scores, b: Scores, level: float = 0.95) -> tuple[float, float]:
     """The interval of iqm(a) - iqm(b), by the bootstrap of interval() over the runs of both. If it does not contain 0, the two
-    differ: that tests more sharply than two intervals that must not overlap."""
+    differ: that tests more sharply than two intervals that must not overlap. level: as in interval()."""
     ours, theirs = _of_several(a, "a"), _of_several(b, "b")
     _need_same(ours, theirs, "a", "b")
     rows = [*ours.values(), *(theirs[task] for task in ours)]
@@ -112,10 +113,10 @@ def difference(a: Scores, b: Scores, level: float = 0.95) -> tuple[float, float]
 
 
 def letters(scores: Mapping[str, Scores], level: float = 0.95) -> dict[str, str]:
-    """The groups of algorithms, {algorithm: scores by task}, as letters, the best group "a": two without a common letter differ,
-    because the interval of difference() does not contain 0, as in `redman compare` and `redman report`. An algorithm with a
-    single run of a task has none (Piepho: An Algorithm for a Letter-Based Representation of All-Pairwise Comparisons, J. of
-    Computational and Graphical Statistics 13, 2004)."""
+    """The groups of algorithms, {algorithm: scores by task}, as letters, the best group "a": two without a common letter
+    differ, because the interval of difference() does not contain 0, as in `redman compare` and `redman report`. An algorithm
+    with a single run of a task has none. level: as in interval() (Piepho: An Algorithm for a Letter-Based Representation of
+    All-Pairwise Comparisons, J. of Computational and Graphical Statistics 13, 2004)."""
     if not isinstance(scores, Mapping):
         raise UsageError(f"scores: it must be a dict {{algorithm: scores by task}}, not {scores!r}")
     tasks = {name: _by_task(rows, name) for name, rows in scores.items()}
@@ -149,9 +150,9 @@ def normalised(value: Any, low: Any, high: Any) -> Any:
 
 
 def ranks(scores: Mapping[str, Scores], level: float = 0.95) -> list[list[str]]:
-    """Groups of algorithms, {algorithm: scores by task}, whose intervals of iqm() all overlap, the best group first and the best
-    of a group first. An algorithm is in two groups where it overlaps with both, as in a diagram of critical differences
-    (Demsar: Statistical Comparisons of Classifiers over Multiple Data Sets, JMLR 7, 2006).
+    """Groups of algorithms, {algorithm: scores by task}, whose intervals of iqm() all overlap, the best group first and the
+    best of a group first. level: as in interval(). An algorithm is in two groups where it overlaps with both, as in a diagram
+    of critical differences (Demsar: Statistical Comparisons of Classifiers over Multiple Data Sets, JMLR 7, 2006).
 
     Algorithms that share no group differ. Those that share one may still differ: improvement() is the sharper test
     (Schenker, Gentleman: On Judging the Significance of Differences by Examining the Overlap Between Confidence Intervals,
