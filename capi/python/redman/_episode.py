@@ -15,7 +15,7 @@ from ._feed import Feed, follow
 from ._files import as_path
 from ._film import film
 from ._html import player
-from ._library import instance, whole
+from ._library import instance, int32, whole
 from ._names import Hinted, nearest, one_of
 from ._rows import Array
 from ._tool import run_tool
@@ -110,12 +110,15 @@ class Episode(Hinted):
         elif ending in _FILMS:
             film(Path(path), self.pictures(range(self.frames), view, width, height, look), 1 / self._seconds)
         else:
-            moments = self.moments(strip) if step is None else [whole(step, "step", 0, self.frames - 1)]
+            if step is not None and not 0 <= int32(step, "step") < self.frames:
+                raise ArgumentError(f"step: {step} is not between 0 and {self.frames - 1}")
+            moments = self.moments(strip) if step is None else [step]
             Path(path).write_bytes(_png.row(list(self.pictures(moments, view, width, height, look))))
 
     def moments(self, count: int) -> list[int]:
         """`count` control steps, 1 or more, at even distances from the first to the last."""
-        count = whole(count, "strip", 1, 1 << 16)
+        if int32(count, "strip") < 1:
+            raise ArgumentError(f"strip: {count} is less than 1")
         return sorted({round(k * (self.frames - 1) / max(1, count - 1)) for k in range(count)})
 
     def pictures(self, steps: Any, camera: Optional[str] = None, width: int = 640, height: int = 480,

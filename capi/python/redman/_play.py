@@ -16,7 +16,7 @@ from ._discovery import TaskName, task_name
 from ._episode import Episode, played
 from ._error import ArgumentError, NotFoundError
 from ._html import number, pair, share, table
-from ._library import all_cores, whole
+from ._library import all_cores, int32
 from ._limits import CostLimits, each_cost
 from ._names import folded, keywords, nearest, one_of
 from ._options import Options, as_dict
@@ -37,7 +37,6 @@ _PLAYED = {"choose": "best", "unproven": "least"}  # options of a shield where n
 _END_FLAGS = {"diverged": 2, "bad_actions": 4, "task_failed": 8}
 _STEP_FLAGS = {"contacts_left_out": 1, "unconverged": 16, "slowed": 32}
 
-_MOST = (1 << 31) - 1  # episodes, worlds and steps
 _BASELINES = ("zero", "hold", "random")
 Function = Callable[[FloatArray], Any]
 # What plays: a policy, a run or its folder, an agent, a baseline, a function of rows, a model with `predict`.
@@ -418,7 +417,8 @@ def evaluate(player: Player, task: Optional[TaskName] = None, episodes: int = 10
     others are given: when nothing keeps the budgets in a world, the action that exceeds them least runs, and steps that cost
     are counted in violating_steps; with shield={"unproven": "error"} StateError is raised.
     """
-    episodes, num_envs = whole(episodes, "episodes", 1, _MOST), whole(num_envs, "num_envs", 1, _MOST)
+    if int32(episodes, "episodes") < 1:
+        raise ArgumentError(f"episodes: {episodes} is less than 1")
     options = as_dict(options)
     task = None if task is None else task_name(task)
     judged = _judged(player, task)
@@ -449,7 +449,7 @@ def evaluate(player: Player, task: Optional[TaskName] = None, episodes: int = 10
         laid = {key: value for key, value in laid.items() if folded(key) != "action_repeat"}
         laid["action_repeat"] = 0 if repeat == "task" else repeat
     center = judged.center if center is None else center
-    worlds = min(num_envs, episodes)
+    worlds = min(int32(num_envs, "num_envs"), episodes)
     threads = all_cores(threads, worlds)
     pool = Pool(chosen, worlds, seed, threads, autoreset="off", options=laid)
     steps = pool.spec.action_repeat
@@ -542,7 +542,7 @@ def episode_of(policy: Policy, task: Optional[TaskName] = None, *, seed: int = 0
     own = None
     if origin is not None and folded(origin.task) == folded(name):
         laid, limits, own = dict(origin.options), origin.cost_limits, origin.own
-    options, steps = as_dict(options), None if steps is None else whole(steps, "steps", 1, _MOST)
+    options, steps = as_dict(options), None if steps is None else int32(steps, "steps")
     given_options = {folded(key) for key in options}
     laid = singly({**{key: value for key, value in laid.items() if folded(key) not in given_options}, **options})
     with Pool(name, 1, seed, autoreset="off", options=laid) as pool:
