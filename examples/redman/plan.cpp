@@ -22,18 +22,22 @@ struct PlanFlags {
 
 Report run_plan(PlanFlags flags) {
   Options options;
-  for (const std::string& text : flags.own) options.push_back(split_pair(text, "--plan"));
-  for (const std::string& text : flags.plans) options.push_back(split_pair(text, "--plan"));
+  GivenOnce keys;
+  if (!flags.policy.empty()) keys.add("policy", "--policy");
+  if (!flags.critic.empty()) keys.add("critic", "--critic");
+  for (const auto* texts : {&flags.own, &flags.plans})
+    for (const std::string& text : *texts) {
+      options.push_back(split_pair(text, "--plan"));
+      keys.add(options.back().first, "--plan " + text);
+    }
   const std::string word = plan_word(options, flags.policy, flags.critic);
   ActorChoice choice = choose_actor(word, flags.pool.task);
   choice.shield = read_shield_word(flags.shield);
   adopt_task(choice, flags.task_given, flags.sets, flags.pool);
-  for (const std::string& set : flags.sets) try {
-      apply_sets({set}, flags.pool, nullptr);
-    } catch (const Usage& e) {
-      const std::string hint = planner_hint(split_pair(set, "--set").first);
-      throw Usage(e.what() + (hint.empty() ? hint : hint + " of --plan"));
-    }
+  apply_sets(flags.sets, flags.pool, nullptr, [](const std::string& key) {
+    const std::string hint = planner_hint(key);
+    return hint.empty() ? hint : hint + " of --plan";
+  });
   choice.limits.insert(choice.limits.end(), flags.limits.begin(), flags.limits.end());
   say_worlds(flags.pool, flags.episodes);
   flags.pool.envs = std::min(flags.pool.envs, flags.episodes);

@@ -159,12 +159,14 @@ void try_settings(const SweepFlags& flags, const std::vector<Cell>& cells) {
     run.agent.algo = c.algo;
     run.limits = flags.limits;
     run.steps = whole_number(flags.steps, "--steps");
+    std::vector<std::string> sets = c.sets;
     try {
-      apply_sets(c.sets, run.pool, &run.agent);
+      take_limit_from_sets(sets, run.limits);
+      apply_sets(sets, run.pool, &run.agent);
       Trainer(run).prepare();
     } catch (const std::exception& e) {
       throw Usage(c.task + ", " + c.algo + (c.variant.empty() ? "" : ", " + c.variant) + ": " + e.what() +
-                  "\nnothing was started");
+                  "; nothing was started");
     }
   }
 }

@@ -53,7 +53,7 @@ done
 "$tool" train $small --from whole --out begun > out 2>&1 || { cat out; failed=1; }
 grep -q '^begins with the policy' out || { echo "no start from a policy: $(cat out)"; failed=1; }
 # shellcheck disable=SC2086
-"$tool" train $small --from whole --dagger 1 $short --set hidden=8 --out distilled > out 2>&1 || { cat out; failed=1; }
+"$tool" train $(echo "$small" | sed s/16,16/8/) --from whole --dagger 1 $short --out distilled > out 2>&1 || { cat out; failed=1; }
 
 # What a demonstration says of how it is learned from; flags win.
 printf '%s\n' 'task hand_over_safe_finger' 'teach demo-decisions=20' 'teach clone-epochs=2' 'teach dagger=2' 'teach beta=0.25' \

@@ -26,5 +26,5 @@ wrong() {
   shift 2
   "$tool" "$@" > out 2> err
   [ $? -eq "$status" ] || { echo "$*: the status is not $status"; cat err; failed=1; }
-  grep -q "$says" err || { echo "$*: the error does not say '$says':"; cat err; failed=1; }
+  grep -q -- "$says" err || { echo "$*: the error does not say '$says':"; cat err; failed=1; }
 }

@@ -70,7 +70,12 @@ Report bench_update(const UpdateFlags& flags) {
   lay("passes", passes);
   lay("minibatches", parts);
   lay("early_stop_kl", "0");
-  for (const std::string& s : flags.sets) options.push_back(split_pair(s, "--set"));
+  refuse_flags(flags.sets, {"hidden"});
+  GivenOnce keys;
+  for (const std::string& s : flags.sets) {
+    options.push_back(split_pair(s, "--set"));
+    keys.add(options.back().first, "--set " + s);
+  }
   const auto raw = raw_options(options);
   auto config = redman::agent_config(flags.obs, flags.act, envs);
   const double limit = 10;

@@ -68,6 +68,7 @@ rdm_epoch collect_and_update(redman::Agent& agent, redman::Pool& pool, int32_t h
 Report bench_policy(SeeingFlags flags) {
   if (!same_name(flags.modality, "points"))
     throw Usage("--modality " + flags.modality + ": a policy can only read points");
+  refuse_flags(flags.sets, {"modality", "points", "encoder", "horizon"});
   apply_sets(flags.sets, flags.pool, &flags.agent);
   const double part = flags.seconds / 6, worlds_count = flags.pool.envs;
 

@@ -120,6 +120,7 @@ Report bench_step(StepFlags flags) {
 }
 
 Report bench_observe(ObserveFlags flags) {
+  refuse_flags(flags.sets, {"modality"});
   apply_sets(flags.sets, flags.pool, nullptr);
   PoolSettings blind = flags.pool;
   flags.pool.options.push_back({"modality", flags.modality});

@@ -39,6 +39,23 @@ std::pair<std::string, std::string> split_pair(const std::string& text, const ch
   return {text.substr(0, at), text.substr(at + 1)};
 }
 
+void GivenOnce::add(const std::string& key, const std::string& where) {
+  for (const std::string& before : keys_)
+    if (same_name(before, key)) throw Usage(where + ": option " + key + " is given twice; give it once");
+  keys_.push_back(key);
+}
+
+std::string with_flag(const std::string& text) {
+  constexpr const char* kFlags[][2] = {{"num_envs:", "--envs:"},
+                                       {"num_threads:", "--threads:"},
+                                       {"obs_dim:", "--obs:"},
+                                       {"action_dim:", "--act:"},
+                                       {"cost_limits", "--cost-limit"}};
+  for (const auto& [member, flag] : kFlags)
+    if (text.rfind(member, 0) == 0) return flag + text.substr(std::string(member).size());
+  return text;
+}
+
 CLI::Validator finite_to(double most) {
   return CLI::Validator(
       [most](const std::string& text) {
@@ -200,7 +217,7 @@ void add_cost_limit_flag(CLI::App& command, std::vector<std::string>& limits) {
   command
       .add_option("--cost-limit,--cost-lim", limits,
                   "limit on the mean sum of a cost over an episode: LIMIT for column 0, NAME=LIMIT for "
-                  "another one; repeatable")
+                  "another one; a negative LIMIT: none; repeatable")
       ->allow_extra_args(false)
       ->type_name("[NAME=]LIMIT");
 }
@@ -211,6 +228,55 @@ namespace {
 std::string algo_hint(const std::string& key) {
   for (int32_t i = 0; i < rdm_algo_count(); ++i)
     if (has_option(algo_options(i), key)) return std::string("; algorithm ") + algo_at(i).name + " has";
+  return "";
+}
+
+// What other libraries call an option or a flag of ours.
+constexpr const char* kElsewhere[][2] = {{"gamma", "discount"},
+                                         {"lr", "learning_rate"},
+                                         {"actor_lr", "learning_rate"},
+                                         {"critic_lr", "critic_learning_rate"},
+                                         {"gae_lambda", "lambda"},
+                                         {"lam", "lambda"},
+                                         {"lam_c", "cost_lambda"},
+                                         {"cost_gamma", "discount"},
+                                         {"clip_range", "clip"},
+                                         {"clip_ratio", "clip"},
+                                         {"batch_size", "minibatches"},
+                                         {"batch_size", "batch_rows"},
+                                         {"n_steps", "horizon"},
+                                         {"steps_per_epoch", "horizon"},
+                                         {"n_epochs", "passes"},
+                                         {"update_iters", "passes"},
+                                         {"ent_coef", "entropy"},
+                                         {"entropy_coef", "entropy"},
+                                         {"target_kl", "trust_kl"},
+                                         {"target_kl", "early_stop_kl"},
+                                         {"buffer_size", "replay_rows"},
+                                         {"hidden_sizes", "hidden"},
+                                         {"net_arch", "hidden"},
+                                         {"lagrangian_multiplier_init", "multiplier_init"},
+                                         {"lambda_lr", "multiplier_lr"},
+                                         {"max_episode_steps", "max_steps"},
+                                         {"episode_length", "max_steps"},
+                                         {"frame_skip", "action_repeat"},
+                                         {"seed", "--seed"},
+                                         {"envs", "--envs"},
+                                         {"num_envs", "--envs"},
+                                         {"threads", "--threads"},
+                                         {"steps", "--steps"},
+                                         {"total_steps", "--steps"},
+                                         {"total_timesteps", "--steps"},
+                                         {"shield", "--shield"}};
+
+// "; here it is called discount", of `keys`, or "; it is the flag --seed"; "" where nothing is known.
+std::string elsewhere_hint(const std::string& key, const std::vector<std::string>& keys) {
+  for (const auto& [theirs, ours] : kElsewhere) {
+    if (!same_name(key, theirs)) continue;
+    if (ours[0] == '-') return std::string("; it is the flag ") + ours;
+    if (std::find(keys.begin(), keys.end(), ours) != keys.end())
+      return std::string("; here it is called ") + ours;
+  }
   return "";
 }
 
@@ -238,9 +304,11 @@ Owner owner_of(const std::vector<rdm_option_spec>& task, const std::vector<rdm_o
 
 }  // namespace
 
-void apply_sets(const std::vector<std::string>& sets, PoolSettings& pool, AgentSettings* agent) {
+void apply_sets(const std::vector<std::string>& sets, PoolSettings& pool, AgentSettings* agent,
+                std::string (*more)(const std::string&)) {
   const auto task_table = task_options(find_task(pool.task));
   const auto algo_table = agent ? algo_options(find_algo(agent->algo)) : std::vector<rdm_option_spec>();
+  GivenOnce to_task, to_algo;
   for (const std::string& text : sets) {
     const auto pair = split_pair(text, "--set");
     if (printable(text) != text)
@@ -250,8 +318,8 @@ void apply_sets(const std::vector<std::string>& sets, PoolSettings& pool, AgentS
       const Owner owner = owner_of(task_table, algo_table, pair.first, pair.second);
       of_task = owner.task, of_algo = owner.algo;
     }
-    if (of_task) pool.options.push_back(pair);
-    if (of_algo) agent->options.push_back(pair);
+    if (of_task) to_task.add(pair.first, "--set " + text), pool.options.push_back(pair);
+    if (of_algo) to_algo.add(pair.first, "--set " + text), agent->options.push_back(pair);
     if (of_task || of_algo) continue;
     std::vector<std::string> keys;
     append_keys(task_table, keys);
@@ -259,9 +327,84 @@ void apply_sets(const std::vector<std::string>& sets, PoolSettings& pool, AgentS
     const std::string owner =
         agent ? "neither task " + pool.task + " nor algorithm " + agent->algo + " has option "
               : "task " + pool.task + " has no option ";
-    const std::string elsewhere = agent ? algo_hint(pair.first) : "";
-    throw Usage("--set " + text + ": " + owner + pair.first +
-                (elsewhere.empty() ? nearest_hint(pair.first, keys) : elsewhere));
+    std::string hint = agent ? algo_hint(pair.first) : "";
+    if (hint.empty()) hint = elsewhere_hint(pair.first, keys);
+    if (hint.empty()) hint = nearest_hint(pair.first, keys);
+    throw Usage("--set " + text + ": " + owner + pair.first + hint + (more ? more(pair.first) : ""));
+  }
+}
+
+void refuse_flags(const std::vector<std::string>& sets, std::initializer_list<const char*> keys) {
+  for (const std::string& text : sets)
+    for (const char* key : keys)
+      if (same_name(split_pair(text, "--set").first, key))
+        throw Usage("--set " + text + ": here it is a flag; give --" + key);
+}
+
+namespace {
+
+// Options that do nothing unless another one has one of these words; "": any but its default.
+struct Belongs {
+  const char *key, *to, *words;
+};
+constexpr const char *kImages = "rgb depth segmentation", *kClouds = "points voxels";
+constexpr Belongs kOfTasks[] = {{"cameras", "modality", kImages},
+                                {"image_width", "modality", kImages},
+                                {"image_height", "modality", kImages},
+                                {"cloud_cameras", "modality", kClouds},
+                                {"cloud_width", "modality", kClouds},
+                                {"cloud_height", "modality", kClouds},
+                                {"cloud_range", "modality", kClouds},
+                                {"points", "modality", "points"},
+                                {"sampling", "modality", "points"},
+                                {"sampling_voxel", "sampling", "voxel"},
+                                {"point_noise", "modality", kClouds},
+                                {"point_dropout", "modality", "points"},
+                                {"point_color", "modality", "points"},
+                                {"voxels", "modality", "voxels"},
+                                {"voxel_size", "modality", "voxels"},
+                                {"sense_every", "modality", ""},
+                                {"budget_discount", "budget", ""},
+                                {"unsafe_reward", "budget", "saute simmer"},
+                                {"simmer_start", "budget", "simmer"},
+                                {"simmer_steps", "budget", "simmer"},
+                                {"hull", "object", "hull"}};
+constexpr Belongs kOfAlgos[] = {{"encoder_activation", "encoder", ""}, {"encoder_frozen", "encoder", ""},
+                                {"encoder_points", "encoder", ""},     {"encoder_classes", "encoder", ""},
+                                {"encoder_color", "encoder", ""},      {"encoder_origin", "encoder", ""},
+                                {"encoder_range", "encoder", ""},      {"memory_chunk", "memory", ""},
+                                {"latent_fields", "latent", ""},       {"latent_hidden", "latent", ""},
+                                {"latent_from", "latent", ""}};
+
+void say_idle_of(const std::string& text, const Belongs& b, const std::vector<rdm_option_spec>& table,
+                 const Options& given) {
+  std::string off, value;
+  for (const rdm_option_spec& o : table)
+    if (same_name(o.key, b.to)) off = value = default_text(o);
+  for (const auto& [key, own] : given)
+    if (same_name(key, b.to)) value = own;
+  const std::vector<std::string> words = words_of(b.words, " "), parts = words_of(value, "+");
+  const bool works = words[0].empty() ? !same_name(value, off)
+                                      : std::any_of(parts.begin(), parts.end(), [&](const auto& part) {
+                                          return std::any_of(words.begin(), words.end(), [&](const auto& w) {
+                                            return same_name(w, part);
+                                          });
+                                        });
+  if (!works)
+    std::fprintf(stderr, "--set %s: it has no effect while %s is %s\n", printable(text).c_str(), b.to,
+                 value.empty() ? "empty" : printable(value).c_str());
+}
+
+}  // namespace
+
+void say_idle(const std::vector<std::string>& sets, const PoolSettings& pool, const AgentSettings* agent) {
+  for (const std::string& text : sets) {
+    const std::string key = split_pair(text, "--set").first;
+    for (const Belongs& b : kOfTasks)
+      if (same_name(key, b.key)) say_idle_of(text, b, task_options(find_task(pool.task)), pool.options);
+    for (const Belongs& b : kOfAlgos)
+      if (agent && same_name(key, b.key))
+        say_idle_of(text, b, algo_options(find_algo(agent->algo)), agent->options);
   }
 }
 

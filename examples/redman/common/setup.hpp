@@ -22,6 +22,15 @@ using Options = std::vector<std::pair<std::string, std::string>>;  // key, value
 
 // "key=value" in two. Usage that names the flag when there is no '=' or no key.
 std::pair<std::string, std::string> split_pair(const std::string& text, const char* flag);
+// Options of one list: what is given twice contradicts itself, and one of the two would go unheard.
+class GivenOnce {
+ public:
+  void add(const std::string& key,
+           const std::string& where);  // Usage, which begins with `where`, for a second one
+
+ private:
+  std::vector<std::string> keys_;
+};
 // The list as the ABI takes it; borrows from `options`.
 std::vector<rdm_option> raw_options(const Options& options);
 
@@ -63,9 +72,15 @@ void add_cost_limit_flag(CLI::App& command, std::vector<std::string>& limits);
 
 // Gives each "key=value" to the table that knows the key: the task's, or, when `agent` is not null, the
 // algorithm's. Of a key that both know, such as preset, the value decides: the one that has this word. Usage with
-// the nearest known key when no table has it.
-void apply_sets(const std::vector<std::string>& sets, PoolSettings& pool, AgentSettings* agent);
+// the nearest known key when no table has it, to which `more` of the key is added, and for a key that is given twice.
+void apply_sets(const std::vector<std::string>& sets, PoolSettings& pool, AgentSettings* agent,
+                std::string (*more)(const std::string& key) = nullptr);
 
+// Usage where texts of --set give an option that is a flag of the command, "--points" of points.
+void refuse_flags(const std::vector<std::string>& sets, std::initializer_list<const char*> keys);
+// Says which texts of --set do nothing, because the option that they belong to is off.
+void say_idle(const std::vector<std::string>& sets, const PoolSettings& pool,
+              const AgentSettings* agent = nullptr);
 // Says so where more worlds were asked for than there are episodes, of which each is played in one.
 void say_worlds(const PoolSettings& pool, int32_t episodes);
 // Moves the option cost_limit of an algorithm, the limit on column 0, from texts of --set to those of --cost-limit. Usage where
@@ -93,6 +108,8 @@ bool has_option(const std::string& algo, const char* wanted);
 // [cost_dim] limits: the task's own, with "40" (column 0) or "name=3" of each text laid over. < 0: none.
 std::vector<double> cost_limits(const redman::Pool& pool, const std::vector<std::string>& texts);
 
+// The library's text with the tool's flag where that names a member of its structs: "num_envs: 0 is outside ...".
+std::string with_flag(const std::string& text);
 // Calls f; a wrong argument, range or name becomes Usage.
 template <class F>
 auto as_usage(F&& f) {
@@ -102,7 +119,7 @@ auto as_usage(F&& f) {
     const rdm_result r = e.code();
     if (r == RDM_ERROR_ARGUMENT || r == RDM_ERROR_RANGE || r == RDM_ERROR_NOT_FOUND ||
         r == RDM_ERROR_UNSUPPORTED)
-      throw Usage(e.what());
+      throw Usage(with_flag(e.what()));
     throw;
   }
 }

@@ -4,7 +4,10 @@
 #include <redman/sense.h>
 
 #include "common/names.hpp"
+#include "common/numbers.hpp"
+#include "common/setting.hpp"
 #include "common/setup.hpp"
+#include "common/text.hpp"
 
 namespace tool {
 
@@ -25,10 +28,12 @@ bool read_plan_word(const std::string& word, PlanWord* out) {
   const size_t colon = word.find(':');
   if (!same_name(word.substr(0, colon), "plan")) return false;
   const auto table = planner_options();
+  GivenOnce keys;
   for (size_t at = colon; at != std::string::npos;) {
     const size_t end = word.find(',', at + 1);
     const std::string item = word.substr(at + 1, end == std::string::npos ? end : end - at - 1);
     const auto [key, value] = split_pair(item, "--policy plan:");
+    keys.add(key, "--policy " + word);
     if (same_name(key, "policy")) {
       out->policy = value;
     } else if (same_name(key, "critic")) {

@@ -31,10 +31,12 @@ ShieldWord read_shield_word(const std::string& word) {
   if (out.on) out.settings = project ? "predict=false\n" : "predict=true\n";  // over those of a run
   if (!out.on && colon != std::string::npos) throw Usage(flag + "off has no options");
   const auto table = shield_options();
+  GivenOnce given;
   for (size_t at = colon; at != std::string::npos;) {
     const size_t end = word.find(',', at + 1);
     const std::string item = word.substr(at + 1, end == std::string::npos ? end : end - at - 1);
     const auto [key, value] = split_pair(item, "--shield:");
+    given.add(key, "--shield " + word);
     std::vector<std::string> keys;
     for (const rdm_option_spec& row : table) keys.push_back(row.key);
     if (same_name(key, "predict")) throw Usage(flag + "the words project and predict set that option");
