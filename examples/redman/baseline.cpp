@@ -90,7 +90,7 @@ void add_baseline(CLI::App& app, Run& run) {
   add_robot_flag(*command);
   command->add_option("--seed", flags->pool.seed, "seed of the worlds and the random actions");
   command->add_option("--episodes", flags->episodes, "number of episodes of each baseline")
-      ->check(CLI::Range(1, kMostEpisodes));
+      ->check(between(1, kMostEpisodes));
   command->add_flag("--markdown", flags->markdown, "print a Markdown table");
   command->callback([&run, flags] { run = [flags] { return run_baseline(*flags); }; });
 }

@@ -67,10 +67,10 @@ void add_bench(CLI::App& app, Run& run) {
   add_pool_flags(*command, policy->pool, "task");
   command->add_option("--algo", policy->agent.algo, "algorithm");
   command->add_option("--modality", policy->modality, "sensors of the policy: points");
-  command->add_option("--points", policy->points, "number of points in a cloud")->check(CLI::Range(1, 16384));
+  command->add_option("--points", policy->points, "number of points in a cloud")->check(between(1, 16384));
   command->add_option("--encoder", policy->encoder, "widths of the encoder's layers, for example 64,128");
   command->add_option("--horizon", policy->horizon, "number of decisions of each world in an epoch")
-      ->check(CLI::Range(1, 4096));
+      ->check(between(1, 4096));
   add_seconds(*command, policy->seconds);
   add_set_flag(*command, policy->sets);
   command->callback([&run, policy] { run = [policy] { return bench_policy(*policy); }; });

@@ -156,7 +156,7 @@ void add_data_make(CLI::App& data, Run& run) {
   command->add_option("task,--task", flags->make.pool.task,
                       "task, by name or by its file (.task), or a published set's name");
   command->add_option("--rows", flags->rows, "number of rows at least; the last episode is whole")
-      ->check(CLI::Range(1.0, 1e9));
+      ->check(between(1.0, 1e9));
   command
       ->add_option("--preset", flags->preset,
                    "dsrl: lengths and limits of the published set of this task; none")

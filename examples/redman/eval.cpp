@@ -1,6 +1,7 @@
 // `eval`: how good a policy is, over many episodes.
 #include "commands.hpp"
 #include "common/names.hpp"
+#include "common/numbers.hpp"
 #include "common/text.hpp"
 #include "data/score.hpp"
 #include "play/evaluate.hpp"
@@ -134,8 +135,7 @@ void add_eval(CLI::App& app, Run& run) {
                       "sets its task's options");
   CLI::Option* task = add_pool_flags(*command, flags->pool,
                                      "task, by name or by its file (.task); default: the policy's task");
-  command->add_option("--episodes", flags->episodes, "number of episodes")
-      ->check(CLI::Range(1, kMostEpisodes));
+  command->add_option("--episodes", flags->episodes, "number of episodes")->check(between(1, kMostEpisodes));
   command->add_flag("--stochastic", flags->stochastic, "sample actions instead of taking the mean");
   command->add_option("--data", flags->data,
                       "data set (.npz) by whose returns and limits the scores are normalised too");

@@ -65,7 +65,7 @@ void add_hull(CLI::App& app, Run& run) {
       app.add_subcommand("hull", "Compute the convex hull of a mesh for --set object=hull --set hull=...");
   command->add_option("file", flags->file, "mesh file to read (.obj or .stl)")->required();
   command->add_option("--points", flags->points, "largest number of corners; the outermost are kept")
-      ->check(CLI::Range(4, kMostPoints));
+      ->check(between(4, kMostPoints));
   command->add_option("--scale", flags->scale, "length of one unit of the file, m")->check(above_zero());
   command->callback([&run, flags] { run = [flags] { return run_hull(*flags); }; });
 }

@@ -122,7 +122,7 @@ void add_learn(CLI::App& app, Run& run) {
   command->add_option("--steps", flags->steps, "number of gradient steps")->check(at_least(1));
   command->add_option("--out", flags->out, "policy file to write")->required();
   command->add_option("--episodes", flags->episodes, "episodes that measure the policy in the end; 0: none")
-      ->check(CLI::Range(0, kMostEpisodes));
+      ->check(between(0, kMostEpisodes));
   command->add_option("--seed", flags->pool.seed, "seed of networks and of the rows that are drawn");
   command->add_option("--threads", flags->pool.threads, "number of threads; 0: the calling thread alone");
   add_cost_limit_flag(*command, flags->limits);

@@ -10,6 +10,7 @@
 #include <locale>
 #include <new>
 #include <redman/redman.hpp>
+#include <regex>
 
 #if defined(_WIN32)
 #include <fcntl.h>
@@ -116,6 +117,21 @@ Named named_command(const CLI::App& app, const std::vector<std::string>& words) 
   return out;
 }
 
+// Sentences of CLI11 in the words of the tool's own.
+std::string plain_text(std::string text) {
+  static const std::pair<std::regex, const char*> kPlain[] = {
+      {std::regex("1 required \\S+ missing"), "it needs a value"},
+      {std::regex("At Most 1 required but received (\\d+)"), "it is given $1 times; give it once"},
+      {std::regex("The following arguments? (?:was|were) not expected: (.*)"),
+       "$1: the command takes no such argument"},
+      {std::regex("^(\\w+) is required"), "argument $1 is missing"},
+      {std::regex("(\\S+) is required"), "$1 is missing"},
+      {std::regex("(\\S+) requires (\\S+)"), "$1 is for $2, which is missing"},
+      {std::regex("(\\S+) excludes (\\S+)"), "$1 and $2 exclude each other"}};
+  for (const auto& [theirs, ours] : kPlain) text = std::regex_replace(text, theirs, ours);
+  return text;
+}
+
 // CLI11 answers an unknown subcommand or flag with a list of unexpected arguments, and a number that does not
 // fit into a flag's type as one that it cannot convert.
 std::string usage_text(const CLI::App& app, const CLI::ParseError& error, const Arguments& arguments) {
@@ -127,6 +143,7 @@ std::string usage_text(const CLI::App& app, const CLI::ParseError& error, const 
   if (!flag.empty()) return flag + ": unknown" + nearest_hint(flag, flags_of(*named.command)) + see;
   std::string text = error.what();
   std::replace(text.begin(), text.end(), '\n', ' ');
+  text = plain_text(text);
   const std::string unread = "Could not convert: ";
   if (text.rfind(unread, 0) == 0) {
     text = text.substr(unread.size()) + ": out of range";

@@ -243,12 +243,12 @@ void add_object(CLI::App& app, Run& run) {
       ->required();
   std::vector<CLI::Option*> of_mesh = {
       command->add_option("--parts", flags->parts, "largest number of convex parts; 1: one convex hull")
-          ->check(CLI::Range(1, RDM_MAX_SHAPES)),
+          ->check(between(1, RDM_MAX_SHAPES)),
       command->add_option("--points", flags->points, "largest number of corners of each part")
-          ->check(CLI::Range(4, 32)),
+          ->check(between(4, 32)),
       command->add_option("--mass", flags->mass, "mass of the object, kg")->check(above_zero()),
       command->add_option("--friction", flags->friction, "friction coefficient of its surface")
-          ->check(CLI::Range(0.0, 10.0)),
+          ->check(between(0.0, 10.0)),
       command->add_option("--material", flags->material, "name of its surface"),
       command->add_option("--scale", flags->scale, "length of one unit of the file, m")->check(above_zero()),
   };

@@ -4,6 +4,7 @@
 
 #include "commands.hpp"
 #include "common/names.hpp"
+#include "common/numbers.hpp"
 #include "common/text.hpp"
 #include "play/evaluate.hpp"
 #include "play/plan_word.hpp"
@@ -85,8 +86,7 @@ void add_plan(CLI::App& app, Run& run) {
                       "policy that proposes plans: policy file, run folder or trained; default: none");
   command->add_option("--critic", flags->critic,
                       "run folder whose critic values the state at the end of a plan; default: none");
-  command->add_option("--episodes", flags->episodes, "number of episodes")
-      ->check(CLI::Range(1, kMostEpisodes));
+  command->add_option("--episodes", flags->episodes, "number of episodes")->check(between(1, kMostEpisodes));
   for (const rdm_option_spec& row : planner_options()) {
     const std::string key = row.key;
     if (key != "method" && key != "samples" && key != "horizon" && key != "iterations") continue;

@@ -209,7 +209,7 @@ void add_render(CLI::App& app, Run& run) {
       command->add_option("--step", flags->step, "control step to draw; 0: the start of the episode")
           ->check(at_least(0));
   command->add_option("--strip", flags->strip, "draw this many pictures of the episode side by side")
-      ->check(CLI::Range(1, 64))
+      ->check(between(1, 64))
       ->excludes(step);
   command->add_option("--from", flags->from, "first control step of the strip, the film and the page")
       ->check(at_least(0));
@@ -222,7 +222,7 @@ void add_render(CLI::App& app, Run& run) {
   command
       ->add_option("--worlds", flags->pool.envs,
                    "number of worlds that stand side by side in a picture, each with an episode of its own")
-      ->check(CLI::Range(1, 1024));
+      ->check(between(1, 1024));
   command->add_flag("--plain", flags->plain,
                     "draw as observations look, in half the time: without materials and round edges");
   command->add_flag("--cloud", flags->cloud,

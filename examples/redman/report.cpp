@@ -9,6 +9,7 @@
 #include "commands.hpp"
 #include "common/files.hpp"
 #include "common/names.hpp"
+#include "common/numbers.hpp"
 #include "common/ownership.hpp"
 #include "common/text.hpp"
 #include "play/evaluate.hpp"
@@ -219,11 +220,11 @@ void add_report(CLI::App& app, Run& run) {
   command
       ->add_option("--episodes", flags->episodes,
                    "number of new episodes by which each run is evaluated; 0: use the training's figures")
-      ->check(CLI::Range(0, kMostEpisodes));
+      ->check(between(0, kMostEpisodes));
   command
       ->add_option("--strip", flags->strip,
                    "number of pictures of one episode of each configuration; 0: none")
-      ->check(CLI::Range(0, 64));
+      ->check(between(0, 64));
   command->add_option("--threads", flags->threads, "number of threads; 0: the calling thread alone");
   command->callback([&run, flags, html] {
     flags->html_given = html->count() > 0;

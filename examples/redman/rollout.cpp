@@ -5,6 +5,7 @@
 #include "commands.hpp"
 #include "common/files.hpp"
 #include "common/names.hpp"
+#include "common/numbers.hpp"
 #include "common/text.hpp"
 #include "play/episodes.hpp"
 #include "record/recorded_rollout.hpp"
@@ -168,7 +169,7 @@ void add_rollout(CLI::App& app, Run& run) {
   CLI::Option* episodes =
       command
           ->add_option("--episodes", flags->episodes, "number of episodes; default: 1, or all of a recording")
-          ->check(CLI::Range(1, kMostEpisodes));
+          ->check(between(1, kMostEpisodes));
   command->add_option("--out", flags->out,
                       "CSV file to write: rewards, costs and the object's observed fields of each step");
   CLI::Option* record = command->add_option("--record", flags->record,
@@ -180,7 +181,7 @@ void add_rollout(CLI::App& app, Run& run) {
       ->add_option(
           "--noise", flags->noise,
           "mean standard deviation of the noise on the actions; a record also has them without it, as label")
-      ->check(CLI::Range(0.0, 10.0));
+      ->check(between(0.0, 10.0));
   add_shield_flag(*command, flags->shield);
   add_set_flag(*command, flags->sets);
   command->callback([&run, flags, task, episodes, command] {

@@ -284,7 +284,7 @@ std::vector<CLI::Option*> add_teach_flags(CLI::App& command, RunSettings& run, s
     const std::string flag = std::string("--") + f.name;
     CLI::Option* o =
         f.whole ? command.add_option(flag, t.*f.whole, f.help) : command.add_option(flag, t.*f.real, f.help);
-    out.push_back(o->check(CLI::Range(f.least, f.most)));
+    out.push_back(o->check(between(f.least, f.most)));
   }
   out.push_back(
       command.add_flag("--success-only", t.success_only, "leave out the teacher's episodes without success"));

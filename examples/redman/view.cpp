@@ -9,6 +9,7 @@
 #include "common/clock.hpp"
 #include "common/files.hpp"
 #include "common/names.hpp"
+#include "common/numbers.hpp"
 #include "common/posix.hpp"
 #include "common/text.hpp"
 #include "play/shield_word.hpp"
@@ -249,8 +250,7 @@ void add_view(CLI::App& app, Run& run) {
                    "what acts: policy file, run folder, .demo file, recorded .npz file, trained, plan, demo, "
                    "zero, hold or random; repeat it to offer more choices on the page")
       ->allow_extra_args(false);
-  command->add_option("--port", flags->port, "port on 127.0.0.1; 0: any free one")
-      ->check(CLI::Range(0, 65535));
+  command->add_option("--port", flags->port, "port on 127.0.0.1; 0: any free one")->check(between(0, 65535));
   command->add_flag("--open", flags->opens, "open the page in a browser");
   command->add_flag("--paused", flags->paused, "start paused");
   CLI::Option* feed = command->add_flag(

@@ -32,4 +32,18 @@ wrong 2 'column cost has two limits' plan $one --cost-limit 3 --cost-limit cost=
 wrong 2 'give --modality' bench observe --set modality=voxels
 wrong 2 'give --horizon' bench policy --set horizon=4
 wrong 2 'it is the flag --seed' train $small --set seed=3 --out no
+
+# Names of other libraries, members of the library's structs, and CLI11's sentences.
+wrong 2 'here it is called discount' train $small --set gamma=0.9 --out no
+wrong 2 'here it is called learning_rate' train $small --set lr=0.1 --out no
+wrong 2 '^redman: --envs: 0 is outside \[1, 65536\]' train --task ball_run --envs 0 --out no
+wrong 2 '^redman: --threads: -1 is outside' eval $one --threads -1
+wrong 2 '^redman: --obs: 0 is outside' bench update --obs 0
+wrong 2 '^redman: --episodes: 0 is outside 1 .. 1000000;' eval --episodes 0
+wrong 2 '^redman: --validation: 1 is outside 0 .. 0.9;' train --validation 1
+wrong 2 '^redman: --rows: 0 is outside 1 .. 1000000000;' data make ball_run --rows 0
+wrong 2 '^redman: --steps: it needs a value;' train --steps
+wrong 2 '^redman: extra: the command takes no such argument' train extra
+wrong 2 '^redman: argument folders is missing' plot
+wrong 2 '^redman: --int8 is for --c, which is missing' export --policy x --int8
 exit $failed

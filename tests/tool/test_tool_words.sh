@@ -73,7 +73,7 @@ refused 2 '--seed: -1 is negative' rollout --task ball_run --seed=-1
 refused 2 '--seed: 18446744073709551616 is out of range' rollout --task ball_run --seed 18446744073709551616
 refused 2 '--envs 99999999999: out of range' rollout --task ball_run --envs 99999999999
 refused 2 'num_threads|--threads' rollout --task ball_run --threads=-1
-refused 2 'not in range 1' rollout --task ball_run --episodes 0
+refused 2 '0 is outside 1' rollout --task ball_run --episodes 0
 for value in 0 -5 1.5 1e30 1e400 nan inf 0x10 1e3x ''; do
   refused 2 '--steps' train --task ball_run --steps="$value"
 done

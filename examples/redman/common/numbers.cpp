@@ -62,6 +62,21 @@ void check_numbers(CLI::App& command) {
   for (CLI::App* sub : command.get_subcommands([](const CLI::App*) { return true; })) check_numbers(*sub);
 }
 
+CLI::Validator between(double low, double high) {
+  const auto digits =
+      [](double x) {  // 1000000, where number_text has 1e+06: what whole numbers are written in
+        return x == std::floor(x) ? format("%.0f", x) : number_text(x);
+      };
+  const std::string range = digits(low) + " .. " + digits(high);
+  return CLI::Validator(
+      [low, high, range](const std::string& text) {
+        double value = 0;
+        return read_number(text, &value) && value >= low && value <= high ? std::string()
+                                                                          : text + " is outside " + range;
+      },
+      range);
+}
+
 CLI::Validator at_least(double least) {
   return CLI::Validator(
       [least](const std::string& text) {

@@ -19,6 +19,8 @@ bool read_number(const std::string& text, double* out);  // finite
 // anything else looks at it: CLI11 reads -1 as the largest unsigned number, 010 as 8 and nothing as 0.
 void check_numbers(CLI::App& command);
 
+// Refuses what is below `low` or above `high`.
+CLI::Validator between(double low, double high);
 // Refuses what is less than `least`.
 CLI::Validator at_least(double least);
 // Refuses what is 0 or less.

@@ -17,7 +17,9 @@ namespace {
 int32_t place_of(const std::string& word, const std::vector<std::string>& words, const char* flag) {
   for (size_t i = 0; i < words.size(); ++i)
     if (same_name(word, words[i])) return static_cast<int32_t>(i);
-  throw Usage(std::string(flag) + ' ' + word + ": unknown" + nearest_hint(word, words));
+  std::string list;
+  for (const std::string& known : words) list += (list.empty() ? "" : ", ") + known;
+  throw Usage(std::string(flag) + ' ' + word + ": it is not one of " + list + nearest_hint(word, words));
 }
 
 }  // namespace
