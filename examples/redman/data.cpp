@@ -69,7 +69,7 @@ Report run_data_make(DataMakeFlags flags) {
   if (!file_ends_in(out, ".npz"))
     throw Usage("--out " + printable(out) +
                 ": its name does not end in .npz; data convert makes other files of it");
-  check_replaceable(out);
+  check_outputs({{"--out", out}});
   make.rows = static_cast<uint64_t>(whole_number(flags.rows, "--rows"));
   const auto begun = Clock::now();
   const DataSet set = make_set(make);
@@ -110,6 +110,7 @@ DataFile data_file(const std::string& path, const char* what) {
 
 Report run_data_convert(const DataConvertFlags& flags) {
   const DataFile from = data_file(flags.from, "FROM"), to = data_file(flags.to, "TO");
+  check_outputs({{"TO", flags.to}}, {{"FROM", flags.from}});
   DataSet set = from == DataFile::kMcap ? read_mcap(flags.from) : read_set(flags.from);
   Json left_out = Json::array();
   std::vector<DataEpisode> kept;

@@ -165,11 +165,11 @@ Report run_export(const ExportFlags& flags) {
   if (choice.file.empty() || choice.recording)
     throw Usage("--policy " + flags.policy +
                 ": it is not a network; give a policy file, a run folder or trained:TASK");
-  check_outputs({{"--rdm", flags.file},
-                 {"--onnx", flags.onnx},
-                 {"--safetensors", flags.safetensors},
-                 {"--c", flags.c},
-                 {"--probe", flags.probe}},
+  check_outputs({{"--rdm", flags.file, ".rdm"},
+                 {"--onnx", flags.onnx, ".onnx"},
+                 {"--safetensors", flags.safetensors, ".safetensors"},
+                 {"--c", flags.c, ".c .h .inc"},
+                 {"--probe", flags.probe, ".json"}},
                 {{"--policy", choice.file}});
   redman::Policy policy(choice.file.c_str());
   redman::Bytes own;

@@ -62,7 +62,7 @@ std::string losses_text(const rdm_learn_report& report) {
 }
 
 Report run_learn(LearnFlags flags) {
-  check_outputs({{"--out", flags.out}}, {{"--from", flags.from}});
+  check_outputs({{"--out", flags.out, ".rdm"}}, {{"--from", flags.from}});
   const int64_t steps = whole_number(flags.steps, "--steps");
   take_limit_from_sets(flags.sets, flags.limits);
   const DataSet set = read_set(flags.from);

@@ -27,6 +27,7 @@ struct ObjectsFlags {
 };
 
 Report list_objects(const ObjectsFlags& flags) {
+  check_outputs({{"--sheet", flags.sheet, ".png"}});
   Json all = Json::array();
   Table table({"object", "shape", "mass, kg", "friction coefficient", "surface", "summary"});
   for (int32_t i = 0; i < rdm_object_count(); ++i) {
@@ -116,7 +117,6 @@ Report show(const rdm_object_def& def, const ObjectFlags& flags, Json json, cons
   json["shapes"] = def.num_shapes;
   if (!flags.out.empty()) {
     const std::string written = object_text(def);
-    check_outputs({{"--out", flags.out}}, {{"the object or mesh that is read", flags.file}});
     import_object_text(written, flags.file);  // nothing is written that could not be read
     replace_file(flags.out, written);
     json["file"] = flags.out;
@@ -205,6 +205,7 @@ Report object_of_mesh(const ObjectFlags& flags) {
 }
 
 Report run_object(const ObjectFlags& flags) {
+  check_outputs({{"--out", flags.out, ".object"}}, {{"the object or mesh that is read", flags.file}});
   if (is_mesh(flags.file)) return object_of_mesh(flags);
   if (flags.given)
     throw Usage(

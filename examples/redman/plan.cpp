@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "commands.hpp"
+#include "common/files.hpp"
 #include "common/names.hpp"
 #include "common/numbers.hpp"
 #include "common/text.hpp"
@@ -22,6 +23,8 @@ struct PlanFlags {
 };
 
 Report run_plan(PlanFlags flags) {
+  need_one_limit_each(flags.limits);
+  check_outputs({{"--record", flags.record, kRecordEndings}});
   Options options;
   GivenOnce keys;
   if (!flags.policy.empty()) keys.add("policy", "--policy");

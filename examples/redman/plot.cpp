@@ -133,7 +133,7 @@ Figure chart_of_tasks(const std::vector<std::vector<const RunData*>>& tasks, boo
 }
 
 Report run_plot(const PlotFlags& flags) {
-  check_replaceable(flags.out);
+  check_outputs({{"--out", flags.out, ".svg"}});
   if (!flags.out_given) check_default_output(flags.out, kChartMark, "--out");
   const std::vector<RunData> runs = read_runs(flags.folders);
   std::vector<std::vector<const RunData*>> tasks;

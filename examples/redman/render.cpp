@@ -126,9 +126,11 @@ Report run_feed(const RenderFlags& flags) {
 Report run_render(RenderFlags flags) {
   read_size(flags);
   if (!flags.html.empty()) check_viewer();
-  check_outputs(
-      {{"--out", flags.out}, {"--html", flags.html}, {"--glb", flags.glb}, {"--video", flags.video}},
-      {{"--policy", flags.policy}});
+  check_outputs({{"--out", flags.out, ".png"},
+                 {"--html", flags.html, ".html .htm"},
+                 {"--glb", flags.glb, ".glb"},
+                 {"--video", flags.video, ".mp4 .gif"}},
+                {{"--policy", flags.policy}});
   if (!flags.feed.empty()) return run_feed(flags);
   ActorChoice choice = choose_actor(flags.policy, flags.pool.task);
   choice.shield = read_shield_word(flags.shield);

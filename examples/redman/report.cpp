@@ -160,7 +160,7 @@ std::string with_deviation(double mean, double deviation) {
 }
 
 Report run_report(const ReportFlags& flags) {
-  check_replaceable(flags.html);
+  check_outputs({{"--html", flags.html, ".html .htm"}});
   if (!flags.html_given) check_default_output(flags.html, "content=\"redman\"", "--html");
   const std::vector<RunData> runs = read_runs(flags.folders);
   std::vector<std::string> tasks;

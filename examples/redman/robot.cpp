@@ -58,7 +58,7 @@ struct RobotFlags {
 
 Report report_robot(const RobotFlags& flags) {
 #ifdef REDMAN_IMPORT
-  check_outputs({{"--out", flags.out}}, {{"the robot that is read", flags.file}});
+  check_outputs({{"--out", flags.out, ".robot"}}, {{"the robot that is read", flags.file}});
   const Import import = import_robot(flags.file, flags.import);
   const rdm_robot_def def = def_of(import);
   if (flags.check && rdm_import_check(import.get()) != RDM_OK)

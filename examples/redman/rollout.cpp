@@ -77,6 +77,8 @@ void adopt_recording(const Recording& r, RolloutFlags& flags) {
 }
 
 Report run_rollout(RolloutFlags flags) {
+  check_outputs({{"--out", flags.out, ".csv"}, {"--record", flags.record, kRecordEndings}},
+                {{"--policy", flags.policy}});
   ActorChoice choice = choose_actor(flags.policy, flags.pool.task);
   choice.shield = read_shield_word(flags.shield);
   if (choice.shield.on && flags.noise > 0)
@@ -93,7 +95,6 @@ Report run_rollout(RolloutFlags flags) {
   const auto episodes = static_cast<size_t>(flags.episodes);
   std::unique_ptr<StepTable> table;
   std::unique_ptr<Recorder> recorder;
-  check_outputs({{"--out", flags.out}, {"--record", flags.record}}, {{"--policy", flags.policy}});
   if (!flags.out.empty()) table = std::make_unique<StepTable>(pool, episodes);
   if (!flags.record.empty())
     recorder = std::make_unique<Recorder>(flags.record, pool, episodes, flags.states, flags.noise > 0);

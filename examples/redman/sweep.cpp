@@ -362,6 +362,7 @@ std::vector<SweepRow> rows_of(const std::vector<Cell>& cells) {
 Report run_sweep(const SweepFlags& flags) {
   if (flags.out.empty()) throw Usage("--out: give the folder that the runs go to");
   const std::vector<Cell> cells = runs_of(flags);
+  RunFolder::check_place(flags.out);
   need_same_settings(flags, cells);
   try_settings(flags, cells);
   const Ran ran = run_cells(flags, cells);

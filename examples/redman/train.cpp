@@ -57,14 +57,15 @@ void give_blocks(RunSettings& run) {
 
 Trainer begin_run(TrainFlags flags, const Ranks* ranks) {
   RunSettings& run = flags.run;
-  if (!run.save_recording.empty()) check_replaceable(run.save_recording);
+  const bool first = !ranks || ranks->first();
+  check_outputs({{"--save-recording", run.save_recording, ".npz"}}, {{"--from", run.teach.from}});
   take_limit_from_sets(flags.sets, run.limits);
   if (run.teach.asked()) {
     parse_shares(flags.start_share, run.teach);
     adopt_teacher(run.teach, flags.task_given, flags.sets, run.pool);
   }
   apply_sets(flags.sets, run.pool, &run.agent);
-  if (!ranks || ranks->first()) say_budget(run.pool, run.limits);
+  if (first) say_budget(run.pool, run.limits);
   run.steps = whole_number(flags.steps, "--steps");
   run.shield = read_shield_word(flags.shield);
   if (run.teach.asked()) {
@@ -81,6 +82,10 @@ Trainer begin_run(TrainFlags flags, const Ranks* ranks) {
                 " learns in one process; only algorithms without a replay memory learn in several");
   if (ranks) give_blocks(run);
   run.own = own_files(task_at(find_task(run.pool.task)).name);
+  if (first && flags.out.empty())
+    RunFolder::check_place(RunFolder::default_path(run));
+  else if (first)
+    RunFolder::check_new(flags.out, flags.overwrite);
   Trainer trainer(run, ranks);  // a wrong value throws here or below, before there is a folder
   if (ranks && !ranks->first()) {
     trainer.follow("");

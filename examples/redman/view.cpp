@@ -53,7 +53,7 @@ struct ViewFlags {
   std::vector<std::string> sets;
   int32_t port = 0;
   double megabytes = 64;
-  bool opens = false, paused = false, feed = false, task_given = false;
+  bool opens = false, paused = false, feed = false, task_given = false, record_given = false;
 };
 
 // The loop between worlds, which go by the clock, and windows.
@@ -214,6 +214,8 @@ Report run_view(ViewFlags flags) {
   ViewSettings& v = flags.view;
   check_viewer();
   check_replaceable(v.record);
+  if (flags.record_given) check_outputs({{"--record", v.record, kRecordEndings}});
+  need_one_limit_each(v.limits);
   if (v.policies.empty()) v.policies = {"hold"};
   ActorChoice choice = choose_actor(v.policies.front(), v.pool.task);
   adopt_task(choice, flags.task_given, flags.sets, v.pool);
@@ -257,16 +259,17 @@ void add_view(CLI::App& app, Run& run) {
       "--feed", flags->feed,
       "show the worlds of another program, such as Python's package, which sends them to standard input");
   command->add_option("--history", flags->megabytes, "memory for past states to go back to, MB")
-      ->check(CLI::Range(0.0, 65536.0));
-  command->add_option("--record", flags->view.record,
-                      "file that the page's record button writes (.npz or .csv)");
+      ->check(between(0.0, 65536.0));
+  CLI::Option* record = command->add_option("--record", flags->view.record,
+                                            "file that the page's record button writes (.npz or .csv)");
   add_shield_flag(*command, flags->view.shield);
   add_cost_limit_flag(*command, flags->view.limits);
   add_set_flag(*command, flags->sets);
   for (const char* name : {"--task", "--policy", "--envs", "--record", "--shield", "--cost-limit", "--set"})
     feed->excludes(name);
-  command->callback([&run, flags, task] {
+  command->callback([&run, flags, task, record] {
     flags->task_given = task->count() > 0;
+    flags->record_given = record->count() > 0;
     if (flags->view.pool.envs > kMostViewed)
       throw Usage(format("--envs: the page shows at most %d worlds", kMostViewed));
     run = [flags] { return flags->feed ? run_fed(*flags) : run_view(*flags); };

@@ -46,4 +46,31 @@ wrong 2 '^redman: --steps: it needs a value;' train --steps
 wrong 2 '^redman: extra: the command takes no such argument' train extra
 wrong 2 '^redman: argument folders is missing' plot
 wrong 2 '^redman: --int8 is for --c, which is missing' export --policy x --int8
+
+# Names of files, and files that cannot be written: before the work, and nothing is left.
+wrong 2 'does not end in .png' render --task ball_run --out a.txt
+wrong 2 'does not end in .glb' render --task ball_run --glb a.html
+wrong 2 'does not end in .csv' rollout $one --out a.png
+wrong 2 'does not end in .npz or .csv' rollout $one --record a.txt
+wrong 2 'does not end in .npz or .csv' plan $one --record a.txt
+wrong 2 'does not end in .svg' plot none --out a.png
+wrong 2 'does not end in .html' report none --html a.png
+wrong 2 'does not end in .rdm' learn --from none.npz --out a.npz
+wrong 2 'does not end in .npz' train $small --from demo --save-recording a.csv --out no
+wrong 2 'does not end in .png' objects --sheet a.csv
+wrong 2 'does not end in .robot' robot shadow_hand --out a.urdf
+wrong 2 'does not end in .object' object egg --out a.stl
+wrong 1 'cannot write none/a.rdm: .*there is no folder none' learn --from none.npz --out none/a.rdm
+wrong 1 'cannot write none/a.npz' data make ball_run --out none/a.npz
+wrong 1 'cannot write none/a.mcap' data convert none.npz none/a.mcap
+wrong 1 'cannot write none/a.npz' train $small --from demo --save-recording none/a.npz --out no
+wrong 1 'cannot write none/a.svg' plot none --out none/a.svg
+wrong 1 'cannot write none/a.png' objects --sheet none/a.png
+wrong 1 'cannot write none/a.object' object none.stl --out none/a.object
+[ "$(ls)" = "err
+out" ] || say "files are left behind: $(ls)"
+touch taken
+wrong 1 'taken' sweep --tasks ball_run --out taken/sweep
+wrong 1 'taken' train --task grasp --from demo --out taken/run
+grep -q 'teacher:' err && say "the folder is tried after the teacher has played"
 exit $failed

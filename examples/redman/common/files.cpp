@@ -200,7 +200,8 @@ void PreparedFile::give_up(int error) {
   if (file_ >= 0) close(file_);
   if (!temporary_.empty()) unlink(temporary_.c_str());
   file_ = -1;
-  throw Failure("cannot write " + path_ + ": " + std::strerror(error));
+  throw Failure("cannot write " + path_ + ": " + std::strerror(error) +
+                (error == ENOENT ? missing_file_hint(target_) : std::string()));
 }
 
 ScratchFile::ScratchFile(const std::string& beside) : path_(beside) {
@@ -264,19 +265,41 @@ void check_replaceable(const std::string& path) {
     throw Failure("cannot write " + path + ": it is a file of a training run; give another name");
 }
 
+namespace {
+
+// Of names that have one: those without are fine.
+void check_ending(const FileOfFlag& file) {
+  const std::string ending = fs::path(file.path).extension().string();
+  if (ending.empty() || file.endings.empty()) return;
+  std::string list;
+  for (const std::string& known : words_of(file.endings, " ")) {
+    if (same_name(ending, known)) return;
+    list += (list.empty() ? "" : " or ") + known;
+  }
+  throw Usage(file.flag + ' ' + file.path + ": its name does not end in " + list);
+}
+
+}  // namespace
+
 void check_outputs(const FilesByFlag& written, const FilesByFlag& read) {
   FilesByFlag others = read;
-  for (const auto& [flag, path] : written) {
-    if (path.empty()) continue;
-    check_replaceable(path);
-    for (const auto& [name, other] : others) {
+  for (const FileOfFlag& file : written) {
+    if (file.path.empty()) continue;
+    check_replaceable(file.path);
+    for (const FileOfFlag& other : others) {
       std::error_code error;
-      if (!other.empty() && (fs::path(path).lexically_normal() == fs::path(other).lexically_normal() ||
-                             fs::equivalent(path, other, error)))
-        throw Usage(flag + ' ' + path + ": it is the file of " + name + "; give another name");
+      if (!other.path.empty() &&
+          (fs::path(file.path).lexically_normal() == fs::path(other.path).lexically_normal() ||
+           fs::equivalent(file.path, other.path, error)))
+        throw Usage(file.flag + ' ' + file.path + ": it is the file of " + other.flag +
+                    "; give another name");
     }
-    others.emplace_back(flag, path);
+    others.push_back(file);
   }
+  for (const FileOfFlag& file : written)
+    if (!file.path.empty()) check_ending(file);
+  for (const FileOfFlag& file : written)
+    if (!file.path.empty()) PreparedFile(file.path);  // goes again
 }
 
 void replace_file(const std::string& path, const std::string& bytes) {

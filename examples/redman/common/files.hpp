@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace tool {
 
@@ -79,9 +80,13 @@ class OpenFile {
 std::string beginning_of(const std::string& path, size_t bytes);
 // Failure when something stands at `path` that is no regular file, or a training's.
 void check_replaceable(const std::string& path);
-// The same of all files that a command is to write, by their flags: {"--out", path}, path "": none. Usage where two are one file,
-// or one is a file that the command reads.
-using FilesByFlag = std::vector<std::pair<std::string, std::string>>;
+// A file by its flag: {"--out", path, ".npz .csv"}. Path "": none. The last are the endings that its name may have, "" all.
+struct FileOfFlag {
+  std::string flag, path, endings = "";
+};
+using FilesByFlag = std::vector<FileOfFlag>;
+// Before the work, of all files that a command is to write: Usage where two are one file, one is a file that the command reads,
+// or a name has another ending; Failure where the file could not be written. Nothing is left behind.
 void check_outputs(const FilesByFlag& written, const FilesByFlag& read = {});
 // Both steps at once.
 void replace_file(const std::string& path, const std::string& bytes);

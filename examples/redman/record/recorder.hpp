@@ -19,6 +19,8 @@ struct RecordNote {
   uint64_t seed = 0;
 };
 
+inline constexpr const char* kRecordEndings = ".npz .csv";
+
 class Recorder {
  public:
   // For the file of this name: named columns of text where it ends in .csv, else arrays of numpy (.npz).

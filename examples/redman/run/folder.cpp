@@ -95,12 +95,37 @@ bool is_own_event_file(const std::string& folder, const std::string& name) {
 
 }  // namespace
 
+void RunFolder::check_place(const std::string& path) {
+  fs::path at = fs::path(path) / "";  // the last folder above that is there, and "" where one begins
+  std::error_code error;
+  do at = at.parent_path();
+  while (!at.empty() && at != at.parent_path() && !fs::exists(fs::symlink_status(at, error)));
+  if (!at.empty() && !fs::is_directory(at, error)) make_folders(path);  // which says why not
+  try {
+    PreparedFile((at / ".redman-run").string());  // goes again
+  } catch (const Failure& e) {
+    throw Failure("cannot make folder " + path + ": " + e.what());
+  }
+}
+
+void RunFolder::check_new(const std::string& path, bool overwrite) {
+  check_place(path);
+  if (!is_folder(path)) return;
+  const RunFolder held(path, locked(path));  // another process may train there
+  check_free(path, overwrite);
+}
+
 RunFolder RunFolder::create(const std::string& path, bool overwrite) {
   make_folders(path);
   RunFolder folder(path, locked(path));
+  check_free(path, overwrite);
+  return folder;
+}
+
+void RunFolder::check_free(const std::string& path, bool overwrite) {
   check_run_files(path);
   const std::string there = first_run_file(path);
-  if (overwrite || there.empty()) return folder;
+  if (overwrite || there.empty()) return;
   if (there != "config.json")
     throw Failure(path + " holds " + there +
                   " of another run: replace it with --overwrite, or give another --out");

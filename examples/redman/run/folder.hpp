@@ -15,7 +15,12 @@ class RunFolder {
   // a Failure unless `overwrite`; nothing of it goes before start(). Files of a run's names that redman did
   // not write are a Failure always; others in the folder stay as they are.
   static RunFolder create(const std::string& path, bool overwrite);
-  // A folder of its own, runs/<algo>-{<task>}/seed-000-<local time>, with -2, -3, ... where there is one.
+  // Failure where the folder is not there and cannot be made, or cannot be written in. Makes nothing.
+  static void check_place(const std::string& path);
+  // Whether create() would succeed, as far as it can be told without making anything: before work whose result goes there.
+  static void check_new(const std::string& path, bool overwrite);
+  static std::string default_path(const RunSettings& settings);  // runs/<algo>-{<task>}/seed-000-<local time>
+  // A folder of its own, that path, with -2, -3, ... where there is one.
   static RunFolder create_default(const RunSettings& settings);
   // An existing run, for this process alone to write in. Failure when there is no config.json, or another
   // process trains there.
@@ -49,7 +54,7 @@ class RunFolder {
 
  private:
   RunFolder(std::string path, int lock) : path_(std::move(path)), lock_(lock) {}
-  static std::string default_path(const RunSettings& settings);
+  static void check_free(const std::string& path, bool overwrite);
   std::vector<std::string> event_files() const;  // names of redman's, in order
   void write_events(const std::string& progress);
 
