@@ -39,8 +39,11 @@ std::vector<std::string> policies_of(const std::string& task, const BaselineFlag
     const bool learned = same_name(name, "trained");
     if (flags.policies.empty() ? learned : std::none_of(flags.policies.begin(), flags.policies.end(), asked))
       continue;
-    if (same_name(name, "demo") && !has_builtin_demo(task)) continue;
-    if (learned && !has_trained_policy(task)) continue;
+    if ((same_name(name, "demo") && !has_builtin_demo(task)) || (learned && !has_trained_policy(task))) {
+      if (!flags.tasks.empty() && !flags.policies.empty())
+        std::fprintf(stderr, "--policy %s: task %s has none\n", name, task.c_str());
+      continue;
+    }
     names.push_back(name);
   }
   return names;

@@ -105,6 +105,8 @@ Report run_eval(EvalFlags flags) {
   need_one_limit_each(flags.limits);
   ActorChoice choice = choose_actor(flags.policy, flags.pool.task);
   choice.shield = read_shield_word(flags.shield);
+  if (flags.stochastic && (choice.baseline >= 0 || choice.demo || choice.plan || choice.recording))
+    throw Usage("--stochastic: only a learned policy draws its actions; " + flags.policy + " does not");
   adopt_task(choice, flags.task_given, flags.sets, flags.pool);
   apply_sets(flags.sets, flags.pool, nullptr);
   choice.limits.insert(choice.limits.end(), flags.limits.begin(), flags.limits.end());
@@ -112,6 +114,7 @@ Report run_eval(EvalFlags flags) {
   say_budget(flags.pool, flags.limits);
   const Evaluation e = evaluate(choice, flags.pool, choice.limits, flags.episodes, flags.stochastic);
   say_trouble(e.summary.trouble, "eval");
+  say_idle(flags.sets, flags.pool);
   Json json = {{"policy", flags.policy}, {"task", task_at(find_task(flags.pool.task)).name}};
   json.update(evaluation_json(e, flags.episodes));
   std::string text = evaluation_text(e, flags.episodes);

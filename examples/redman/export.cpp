@@ -5,6 +5,7 @@
 
 #include "commands.hpp"
 #include "common/files.hpp"
+#include "common/numbers.hpp"
 #include "common/presets.hpp"
 #include "common/text.hpp"
 #include "network/c_source.hpp"
@@ -246,12 +247,14 @@ void add_export(CLI::App& app, Run& run) {
       ->needs(c)
       ->excludes(onnx)
       ->excludes(safetensors);
-  command->add_option("--probe", flags->probe,
-                      "JSON file to write: random observations with the policy's mean actions, to check "
-                      "other implementations");
+  CLI::Option* probe =
+      command->add_option("--probe", flags->probe,
+                          "JSON file to write: random observations with the policy's mean actions, to check "
+                          "other implementations");
   command->add_option("--probes", flags->probes, "number of observations in --probe")
-      ->check(CLI::Range(1, 100000));
-  command->add_option("--seed", flags->seed, "seed of the observations of --probe");
+      ->check(between(1, 100000))
+      ->needs(probe);
+  command->add_option("--seed", flags->seed, "seed of the observations of --probe")->needs(probe);
   command->callback([&run, flags, name] {
     flags->name_given = name->count() > 0;
     run = [flags] { return run_export(*flags); };

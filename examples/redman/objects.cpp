@@ -228,10 +228,14 @@ void add_objects(CLI::App& app, Run& run) {
   auto flags = std::make_shared<ObjectsFlags>();
   CLI::App* command = app.add_subcommand("objects", "List the objects for --set object=NAME");
   command->add_flag("--markdown", flags->markdown, "print the table of the manual's pages");
-  command->add_option("--sheet", flags->sheet,
-                      "PNG file to write: a picture of each object, articulated ones included");
-  command->add_option("--side", flags->side, "side of each picture, pixels")->check(CLI::Range(16, 1024));
-  command->add_option("--columns", flags->columns, "number of pictures in a row")->check(CLI::Range(1, 100));
+  CLI::Option* sheet = command->add_option(
+      "--sheet", flags->sheet, "PNG file to write: a picture of each object, articulated ones included");
+  command->add_option("--side", flags->side, "side of each picture, pixels")
+      ->check(between(16, 1024))
+      ->needs(sheet);
+  command->add_option("--columns", flags->columns, "number of pictures in a row")
+      ->check(between(1, 100))
+      ->needs(sheet);
   add_object_flag(*command);
   command->callback([&run, flags] { run = [flags] { return list_objects(*flags); }; });
 }

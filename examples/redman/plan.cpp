@@ -50,6 +50,7 @@ Report run_plan(PlanFlags flags) {
   e.limits = cost_limits(pool, choice.limits);
   for (const rdm_cost_info& c : task_costs(pool.spec().task)) e.costs.push_back(c.name);
   Actor actor(choice, pool, false, flags.pool.seed);
+  say_idle(flags.sets, flags.pool);
   const auto episodes = static_cast<size_t>(flags.episodes);
   std::unique_ptr<Recorder> recorder;
   if (!flags.record.empty())

@@ -50,17 +50,26 @@ Scene scene_of(const RenderFlags& flags, const ActorChoice& choice) {
   return {flags.pool, choice, {flags.camera, flags.width, flags.height, flags.cloud, flags.plain}};
 }
 
+void go_to(Scene& scene, int32_t step, const char* flag) {
+  scene.advance_to(step);
+  if (scene.step() < step)
+    throw Usage(format("%s %d: the episode ends at step %d", flag, step, scene.step()));
+}
+
 Image draw(const RenderFlags& flags, const ActorChoice& choice, Scene& scene) {
-  if (flags.strip > 0)
-    return draw_strip(scene, flags.strip, flags.from, last_step(scene_of(flags, choice), flags.to));
-  scene.advance_to(flags.step);
+  if (flags.strip > 0) {
+    Scene first = scene_of(flags, choice);
+    go_to(first, flags.from, "--from");
+    return draw_strip(scene, flags.strip, flags.from, last_step(std::move(first), flags.to));
+  }
+  go_to(scene, flags.step, "--step");
   return scene.picture();
 }
 
 void film(const RenderFlags& flags, Scene& scene) {
   const int32_t height = flags.height * (flags.cloud ? 2 : 1);
   Film film(flags.video, flags.width, height, 1 / static_cast<double>(scene.pool().spec().control_dt));
-  scene.advance_to(flags.from);
+  go_to(scene, flags.from, "--from");
   do {
     film.add(scene.picture());
   } while ((flags.to < 0 || scene.step() < flags.to) && scene.advance());
@@ -72,8 +81,10 @@ struct Played {
   Trouble trouble;
   int64_t violating_steps = 0;
   std::optional<ShieldCounts> shield;
+  int32_t step = 0;
 
   void note(const Scene& scene) {
+    step = scene.step();
     trouble = scene.trouble();
     violating_steps = scene.pool().stats().violations;
     if (scene.shielded()) shield = scene.shielded()->counts();
@@ -82,7 +93,7 @@ struct Played {
 
 Playback record(const RenderFlags& flags, const ActorChoice& choice, Played& played) {
   Scene scene = scene_of(flags, choice);
-  scene.advance_to(flags.from);
+  go_to(scene, flags.from, "--from");
   Playback playback = begin_playback(scene.pool(), cost_limits(scene.pool(), choice.limits));
   playback.actor = flags.policy;
   playback.seed = flags.pool.seed;
@@ -139,6 +150,10 @@ Report run_render(RenderFlags flags) {
   if (flags.pool.envs > 1 && (flags.cloud || !flags.html.empty() || !flags.glb.empty()))
     throw Usage("--worlds: --html, --glb and --cloud show one world");
   const bool plays = !flags.video.empty() || !flags.html.empty() || !flags.glb.empty();
+  if (!plays && flags.strip == 0 && (flags.from > 0 || flags.to >= 0))
+    throw Usage("--from and --to are for --strip, --video, --html and --glb; give --step for one picture");
+  if (flags.to >= 0 && flags.to < flags.from)
+    throw Usage(format("--to %d: it is before --from %d", flags.to, flags.from));
   const bool pictures = !plays || !flags.out.empty() || flags.strip > 0 || flags.step_given;
   if (flags.out.empty()) {
     flags.out = "render.png";
@@ -177,9 +192,12 @@ Report run_render(RenderFlags flags) {
     write_playback(flags, playback, json, files, text);
     if (frames == 0) json["frames"] = playback.frames;
   }
+  if (flags.to > played.step && (plays || flags.strip > 0))
+    std::fprintf(stderr, "--to %d: the episode ends at step %d\n", flags.to, played.step);
   json["file"] = files.front();
   put_trouble(json, played.trouble);
   say_trouble(played.trouble, "render");
+  say_idle(flags.sets, flags.pool);
   if (played.shield) {
     json["violating_steps"] = played.violating_steps;
     put_shield(json, *played.shield);

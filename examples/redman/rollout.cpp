@@ -92,6 +92,7 @@ Report run_rollout(RolloutFlags flags) {
   flags.pool.envs = std::min(flags.pool.envs, flags.episodes);
   redman::Pool pool = make_pool(flags.pool, RDM_AUTORESET_OFF);
   Actor actor(choice, pool);
+  say_idle(flags.sets, flags.pool);
   const auto episodes = static_cast<size_t>(flags.episodes);
   std::unique_ptr<StepTable> table;
   std::unique_ptr<Recorder> recorder;

@@ -55,6 +55,35 @@ void give_blocks(RunSettings& run) {
   run.agent.options.emplace_back("blocks", std::to_string(blocks));
 }
 
+// What --from sets, and no flag: of the worlds, of how it is taught, and of the algorithm.
+void say_taken(const TrainFlags& flags, const TeachSettings& asked, const Options& of_worlds,
+               const Options& of_algo) {
+  const RunSettings& run = flags.run;
+  std::string text = flags.task_given ? "" : " task " + run.pool.task + ';';
+  const auto add = [&](const char* what, const Options& options) {
+    std::string list;
+    for (auto at = options.begin(); at != options.end(); ++at) {
+      const auto same = [&](const auto& other) { return same_name(other.first, at->first); };
+      const bool set = std::any_of(flags.sets.begin(), flags.sets.end(), [&](const std::string& s) {
+        return same_name(s.substr(0, s.find('=')), at->first);
+      });
+      if (!set && std::none_of(at + 1, options.end(), same)) list += ' ' + at->first + '=' + at->second;
+    }
+    if (!list.empty()) text += std::string(what) + list + ';';
+  };
+  Options lesson;
+  for (const TeachField& f : kTeachFields) {
+    const double before = f.whole ? asked.*f.whole : asked.*f.real,
+                 after = f.whole ? run.teach.*f.whole : run.teach.*f.real;
+    if (before != after) lesson.emplace_back(f.name, number_text(after));
+  }
+  add(" options of the task:", of_worlds);
+  add(" flags:", lesson);
+  add(" options of the algorithm:", of_algo);
+  std::fprintf(stderr, "--from %s sets%s --set and flags override these\n", printable(run.teach.from).c_str(),
+               printable(text).c_str());
+}
+
 Trainer begin_run(TrainFlags flags, const Ranks* ranks) {
   RunSettings& run = flags.run;
   const bool first = !ranks || ranks->first();
@@ -64,18 +93,25 @@ Trainer begin_run(TrainFlags flags, const Ranks* ranks) {
     parse_shares(flags.start_share, run.teach);
     adopt_teacher(run.teach, flags.task_given, flags.sets, run.pool);
   }
+  const Options of_teacher = run.pool.options;
+  const TeachSettings asked = run.teach;
+  Options of_lesson;
   apply_sets(flags.sets, run.pool, &run.agent);
   if (first) say_budget(run.pool, run.limits);
   run.steps = whole_number(flags.steps, "--steps");
   run.shield = read_shield_word(flags.shield);
   if (run.teach.asked()) {
+    const size_t given = run.agent.options.size();
     for (const Options& options :
          {adopt_lesson(flags.teach_given, run.pool, run.teach), taught_options(run.teach, run.agent.options)})
       run.agent.options.insert(run.agent.options.begin(), options.begin(), options.end());
+    need_effect(flags.teach_given, run.pool, run.teach);
+    of_lesson.assign(run.agent.options.begin(), run.agent.options.end() - static_cast<std::ptrdiff_t>(given));
   } else if (!std::all_of(flags.teach_given.begin(), flags.teach_given.end(),
                           [](const std::string& name) { return name.rfind("pretrain", 0) == 0; })) {
     throw Usage("these flags need a teacher: give --from");
   }
+  if (!run.teach.asked()) need_effect(flags.teach_given, run.pool, run.teach);
   give_eyes(run.agent, run.pool);
   if (ranks && !has_option(run.agent.algo, "blocks"))
     throw Usage("--ranks: " + run.agent.algo +
@@ -87,7 +123,11 @@ Trainer begin_run(TrainFlags flags, const Ranks* ranks) {
   else if (first)
     RunFolder::check_new(flags.out, flags.overwrite);
   Trainer trainer(run, ranks);  // a wrong value throws here or below, before there is a folder
-  if (ranks && !ranks->first()) {
+  if (first) {
+    if (run.teach.asked()) say_taken(flags, asked, of_teacher, of_lesson);
+    say_idle(flags.sets, run.pool, &run.agent);
+  }
+  if (!first) {
     trainer.follow("");
     return trainer;
   }
@@ -283,7 +323,8 @@ std::vector<CLI::Option*> add_teach_flags(CLI::App& command, RunSettings& run, s
   TeachSettings& t = run.teach;
   command.add_option("--from", t.from,
                      "what to learn from first: demo, or a .demo or .npz file, is cloned; trained, a policy "
-                     "file or a run folder is the start");
+                     "file or a run folder is the start. It sets options of worlds and algorithm, which "
+                     "are printed; --set overrides them");
   std::vector<CLI::Option*> out;
   for (const TeachField& f : kTeachFields) {
     const std::string flag = std::string("--") + f.name;
@@ -351,6 +392,7 @@ void add_train(CLI::App& app, Run& run) {
                        ->group(kRunGroup));
   others.push_back(
       command->add_flag("--overwrite", flags->overwrite, "start again in a folder that already holds a run")
+          ->needs("--out")
           ->group(kRunGroup));
   const std::vector<CLI::Option*> taught = add_teach_flags(*command, r, flags->start_share);
   others.push_back(command->get_option("--from"));

@@ -222,6 +222,7 @@ Report run_view(ViewFlags flags) {
   apply_sets(flags.sets, v.pool, nullptr);
   v.history_bytes = history_bytes(flags);
   Session session(v);
+  say_idle(flags.sets, v.pool);
   return serve(flags, session, v.pool.task);
 }
 

@@ -47,6 +47,14 @@ wrong 2 '^redman: extra: the command takes no such argument' train extra
 wrong 2 '^redman: argument folders is missing' plot
 wrong 2 '^redman: --int8 is for --c, which is missing' export --policy x --int8
 
+# Steps of an episode.
+wrong 2 '--step 9: the episode ends at step 3' render --task ball_run --set max_steps=3 --step 9 --out a.png
+wrong 2 '--from 9: the episode ends at step 3' render --task ball_run --set max_steps=3 --strip 2 --from 9 --out a.png
+wrong 2 '--from 9: the episode ends at step 3' render --task ball_run --set max_steps=3 --glb a.glb --from 9
+wrong 2 'it is before --from 2' render --task ball_run --strip 2 --from 2 --to 1 --out a.png
+wrong 2 'give --step for one picture' render --task ball_run --to 1 --out a.png
+told '--to 9: the episode ends at step 3' render --task ball_run --set max_steps=3 --size 8x8 --strip 2 --to 9 --out strip.png
+
 # Names of files, and files that cannot be written: before the work, and nothing is left.
 wrong 2 'does not end in .png' render --task ball_run --out a.txt
 wrong 2 'does not end in .glb' render --task ball_run --glb a.html
@@ -68,9 +76,48 @@ wrong 1 'cannot write none/a.svg' plot none --out none/a.svg
 wrong 1 'cannot write none/a.png' objects --sheet none/a.png
 wrong 1 'cannot write none/a.object' object none.stl --out none/a.object
 [ "$(ls)" = "err
-out" ] || say "files are left behind: $(ls)"
+out
+strip.png" ] || say "files are left behind: $(ls)"
 touch taken
 wrong 1 'taken' sweep --tasks ball_run --out taken/sweep
 wrong 1 'taken' train --task grasp --from demo --out taken/run
 grep -q 'teacher:' err && say "the folder is tried after the teacher has played"
+
+# Beside --from: what does nothing is refused, what it sets is said.
+told "--from demo sets task hand_over_safe_finger; .* init_std=0.03 .*--set and flags override these" \
+  train --from demo --envs 2 --steps 20 --set max_steps=10 --set horizon=10 --set hidden=8 --set minibatches=1 --set std_min=0.02 \
+  --demo-decisions 4 --clone-epochs 1 --dagger 0 --save-recording shown.npz --out shown
+grep '^--from' err | grep -q 'std_min' && say "it sets what --set gives: $(cat err)"
+hand='--envs 2 --steps 20 --set max_steps=10 --set horizon=10 --set hidden=8 --set minibatches=1'
+for flags in '--dagger 1' '--beta 0.5' '--demo-decisions 4' '--noise 0.1' '--save-recording again.npz'; do
+  wrong 2 "^redman: ${flags%% *} has no effect with --from shown.npz" train $hand --from shown.npz $flags --out no
+done
+for flags in '--beta 0.5' '--demo-decisions 4' '--noise 0.1' '--save-recording again.npz' '--clone-rate 1e-3' '--validation 0.2' --success-only; do
+  wrong 2 "^redman: ${flags%% *} has no effect with --from shown" train $hand --from shown $flags --out no
+done
+wrong 2 '--pretrain-epochs has no effect: there are no clouds' train $hand --pretrain-epochs 2 --out no
+wrong 2 'there is no policy to begin with; give --dagger' train $small --from plan --out no
+[ ! -e no ] || say "a refused call left a folder"
+
+# Options that are off, and flags without what they are for.
+told 'cameras=front: it has no effect while modality is state' eval $one --set cameras=front
+silent 'no effect' eval $one --set modality=depth --set cameras=front
+told 'budget_discount=0.9: it has no effect while budget is none' eval $one --set budget_discount=0.9
+told 'memory_chunk=4: it has no effect while memory is empty' train $small --set memory_chunk=4 --out idle
+silent 'no effect' eval --policy idle --episodes 1
+wrong 2 'knots 9 is above the horizon, 4' plan $one --horizon 4 --plan knots=9
+wrong 2 'hold does not' eval $one --policy hold --stochastic
+wrong 2 '--probes is for --probe, which is missing' export --policy idle --probes 3 --c a.c
+wrong 2 '--side is for --sheet, which is missing' objects --side 32
+
+wrong 2 '--overwrite is for --out, which is missing' train $small --overwrite
+wrong 2 'it is not one of auto, urdf, mjcf, robot' robot x.urdf --format obj
+told '--policy demo: task ball_run has none' baseline --task ball_run --policy demo
+
+# A policy away from its run.
+cp idle/policy.rdm alone.rdm
+for command in 'eval --episodes 1' 'rollout' 'render --size 8x8 --out b.png'; do
+  told 'alone.rdm: no config.json of its run' $command --policy alone.rdm
+done
+silent 'no config.json' eval --policy idle --episodes 1
 exit $failed

@@ -83,6 +83,6 @@ has 'episodes diverged' report.html
 run plan --task faulty --episodes 10 --plan samples=4 --plan horizon=3 --json
 has '"diverged":[1-9]'
 has '"feasible":false'
-run render --task faulty --policy zero --size 64x48 --out out.png --seed 3 --to 9 --json
+run render --task faulty --policy zero --size 64x48 --out out.png --seed 3 --json
 has '"diverged":'
 exit $failed

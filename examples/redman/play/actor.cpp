@@ -63,7 +63,9 @@ ActorChoice choose_actor(const std::string& word, const std::string& task) {
   std::string own = task;
   if (read_trained_word(word, &own)) {
     if (own.empty()) throw Usage("--policy trained: it is not known of which task; give trained:TASK");
-    return choose_actor(trained_policy(own));
+    choice = choose_actor(trained_policy(own));
+    choice.alone = false;  // it learned with the task's defaults
+    return choice;
   }
   PlanWord plan;
   if (read_plan_word(word, &plan)) {
@@ -104,7 +106,8 @@ ActorChoice choose_actor(const std::string& word, const std::string& task) {
   choice.color = info.point_color != 0;
   choice.repeat = info.action_repeat;
   const std::string folder = run_folder_of(choice.file);
-  if (folder.empty()) return choice;
+  choice.alone = folder.empty();
+  if (choice.alone) return choice;
   const RunSettings run = run_settings(folder);
   if (same_name(run.pool.task, choice.task)) {
     choice.options = run.pool.options;
@@ -128,6 +131,11 @@ void adopt_task(const ActorChoice& choice, bool task_given, const std::vector<st
       throw Failure(choice.file + " was recorded in task " + choice.task + ", not in " + pool.task);
     pool.seed = choice.recording->pool.seed;
   }
+  if (choice.alone)
+    std::fprintf(stderr,
+                 "policy %s: no config.json of its run stands beside it: options and limits are the task's "
+                 "defaults, but for --set and --cost-limit\n",
+                 printable(choice.file).c_str());
   if (!task_given && !choice.task.empty()) pool.task = choice.task;
   if (choice.demo && !choice.script) {
     Options given = pool.options;

@@ -25,6 +25,7 @@ struct ActorChoice {
   bool demo = false;      // the script, or without one the task's own
   std::optional<DemoScript> script;
   std::shared_ptr<const Recording> recording;
+  bool alone = false;               // a policy file without its run's config.json
   std::string task;                 // that the policy learned; "" unknown
   Options options;                  // of the task, when the policy stands in a run folder
   std::vector<std::string> limits;  // --cost-limit of that run
@@ -40,7 +41,7 @@ struct ActorChoice {
 ActorChoice choose_actor(const std::string& word, const std::string& task = "");
 
 // Lays what the policy knows about its task under the flags: the task's name when `task_given` is false, and
-// the options of its run when the tasks agree. A recording brings its seed, and plays its own task alone.
+// the options of its run when the tasks agree; says so of a policy whose run is not known. A recording brings its seed, and plays its own task alone.
 // `sets` are those that will be laid over all that: they choose among the demonstrations of a task.
 void adopt_task(const ActorChoice& choice, bool task_given, const std::vector<std::string>& sets,
                 PoolSettings& pool);

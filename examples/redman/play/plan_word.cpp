@@ -45,6 +45,16 @@ bool read_plan_word(const std::string& word, PlanWord* out) {
     }
     at = end;
   }
+  double knots = 0, horizon = 0;
+  for (const rdm_option_spec& row : table)
+    if (same_name(row.key, "horizon")) horizon = row.number;
+  for (const auto& [key, value] : read_settings(out->settings)) {
+    if (same_name(key, "knots")) read_number(value, &knots);
+    if (same_name(key, "horizon")) read_number(value, &horizon);
+  }
+  if (knots > horizon)
+    throw Usage("--policy " + word + ": knots " + number_text(knots) + " is above the horizon, " +
+                number_text(horizon));
   return true;
 }
 

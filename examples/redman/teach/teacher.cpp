@@ -221,6 +221,34 @@ Options adopt_lesson(const std::vector<std::string>& given, const PoolSettings& 
   return script.learn;
 }
 
+void need_effect(const std::vector<std::string>& given, const PoolSettings& pool, const TeachSettings& s) {
+  const bool recorded = is_file(s.from), shown = s.asked() && !recorded;
+  const ActorChoice choice = shown ? choose_actor(s.from, pool.task) : ActorChoice();
+  if (choice.baseline >= 0) throw Usage("--from " + s.from + ": there is nothing to learn from this");
+  const bool start = shown && s.dagger == 0 && !choice.demo;
+  if (start && choice.plan)
+    throw Usage("--from " + s.from +
+                ": there is no policy to begin with; give --dagger ROUNDS to learn from plans");
+  const auto why = [&](const std::string& name) -> std::string {
+    const bool of_teacher = name == "demo-decisions" || name == "noise" || name == "save-recording";
+    const bool of_clone = name.rfind("clone-", 0) == 0 || name == "validation" || name == "success-only";
+    if (name == "noise" && s.pretrain > 0) return "";
+    if (name == "pretrain-epochs" && s.pretrain == 0)
+      return "there are no clouds to learn from; give --pretrain";
+    if (name == "dagger" && recorded && s.dagger > 0)
+      return "a recording cannot label other states; give demo, or a policy";
+    if (name == "beta" && s.dagger == 0) return "it is for rounds of --dagger, and there are none";
+    if (of_teacher && recorded) return "its rows are recorded already, and no teacher acts";
+    if ((of_teacher || of_clone) && start)
+      return "training begins with this policy, and nothing is cloned; with --dagger ROUNDS it is the "
+             "teacher";
+    return "";
+  };
+  for (const std::string& name : given)
+    if (const std::string text = why(name); !text.empty())
+      throw Usage("--" + name + " has no effect" + (s.asked() ? " with --from " + s.from : "") + ": " + text);
+}
+
 void adopt_teacher(const TeachSettings& s, bool task_given, const std::vector<std::string>& sets,
                    PoolSettings& pool) {
   if (is_file(s.from)) {
@@ -248,7 +276,6 @@ Taught teach(const TeachSettings& s, const PoolSettings& settings, redman::Agent
     return out;
   }
   const ActorChoice teacher = choose_actor(s.from, settings.task);
-  if (teacher.baseline >= 0) throw Usage("--from " + s.from + ": there is nothing to learn from this");
   if (!teacher.demo && s.dagger == 0) {
     load_policy(teacher.file, make_pool(settings, RDM_AUTORESET_OFF), agent);
     std::fprintf(stderr, "begins with the policy %s\n", printable(s.from).c_str());

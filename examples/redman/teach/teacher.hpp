@@ -31,6 +31,10 @@ Options taught_options(const TeachSettings& settings, const Options& given);
 Options adopt_lesson(const std::vector<std::string>& given, const PoolSettings& pool,
                      TeachSettings& settings);
 
+// Usage for a flag of `given` that does nothing beside what `from` is, or without another flag. After adopt_lesson.
+void need_effect(const std::vector<std::string>& given, const PoolSettings& pool,
+                 const TeachSettings& settings);
+
 // First, if asked for, the agent's encoder learns to tell hands and things apart, in worlds where the teacher
 // acts, or without one anything. Then fills the agent: by its teacher's labels, or where `from` is a policy
 // and there are no rounds of DAgger, by that policy itself. `repeat`: control steps of a decision of the
