@@ -370,7 +370,9 @@ void add_train(CLI::App& app, Run& run) {
   others.push_back(
       command->add_option("--seed", r.pool.seed, "seed of the worlds, the initial weights and the noise"));
   others.push_back(add_shield_flag(*command, flags->shield));
-  command->add_option("--resume", flags->resume, "run folder to continue from its last checkpoint");
+  command->add_option("--resume", flags->resume,
+                      "run folder to continue from its last checkpoint. Ctrl-C ends a run after its epoch, "
+                      "with a checkpoint; a second Ctrl-C ends it at once");
   others.push_back(command->add_option("--eval-every", r.eval_every, "number of epochs between evaluations")
                        ->check(at_least(1))
                        ->group(kRunGroup));

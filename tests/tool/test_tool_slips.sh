@@ -120,4 +120,13 @@ for command in 'eval --episodes 1' 'rollout' 'render --size 8x8 --out b.png'; do
   told 'alone.rdm: no config.json of its run' $command --policy alone.rdm
 done
 silent 'no config.json' eval --policy idle --episodes 1
+
+# The first signal is answered.
+"$tool" train --task ball_run --envs 8 --steps 100000000 --set horizon=500 --out long > out 2> err &
+pid=$!
+for i in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do grep -q 'training in' err && break; sleep 0.5; done
+sleep 1
+kill -INT $pid
+wait $pid || say "after SIGINT the exit status is $?"
+grep -q 'stopping after this epoch; a second signal stops at once' err || say "SIGINT is not answered: $(cat err)"
 exit $failed

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cerrno>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -10,6 +11,7 @@
 #include "common/clock.hpp"
 #include "common/files.hpp"
 #include "common/names.hpp"
+#include "common/posix.hpp"
 #include "common/setting.hpp"
 #include "common/text.hpp"
 
@@ -18,17 +20,23 @@ namespace {
 
 std::atomic<int> g_signals{0};
 std::atomic<rdm_agent*> g_agent{nullptr};
+std::atomic<bool> g_says{false};  // whether a signal is answered: by one of several ranks
 
 // The first signal ends the run after this epoch, whose end can be continued bit for bit; the second at once.
 extern "C" void on_signal(int number) {
   std::signal(number, on_signal);  // some systems take the handler away
-  if (g_signals.fetch_add(1) > 0) rdm_agent_cancel(g_agent.load());
+  if (g_signals.fetch_add(1) > 0) return rdm_agent_cancel(g_agent.load());
+  constexpr char kText[] = "\nstopping after this epoch; a second signal stops at once\n";
+  const int kept = errno;  // of the call that is interrupted
+  if (g_says && write(STDERR_FILENO, kText, sizeof kText - 1) < 0) errno = kept;
+  errno = kept;
 }
 
 class SignalScope {
  public:
-  explicit SignalScope(rdm_agent* agent) {
+  SignalScope(rdm_agent* agent, bool says) {
     g_agent = agent;
+    g_says = says;
     g_signals = 0;
     old_int_ = std::signal(SIGINT, on_signal);
     old_term_ = std::signal(SIGTERM, on_signal);
@@ -344,7 +352,7 @@ void Trainer::train_to_the_end(Meter& meter) {
 }
 
 void Trainer::run() {
-  const SignalScope signals(agent_.get());
+  const SignalScope signals(agent_.get(), first());
   Meter meter(env_steps_, settings_.steps);
   try {
     train_to_the_end(meter);
