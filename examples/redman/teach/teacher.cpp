@@ -244,8 +244,14 @@ void need_effect(const std::vector<std::string>& given, const PoolSettings& pool
              "teacher";
     return "";
   };
+  // a program may write out every default, as redman.train in Python does
+  const auto is_default = [&](const std::string& name) {
+    const TeachField* f = find_teach_field(name);
+    const TeachSettings plain;
+    return f && (f->whole ? s.*f->whole == plain.*f->whole : s.*f->real == plain.*f->real);
+  };
   for (const std::string& name : given)
-    if (const std::string text = why(name); !text.empty())
+    if (const std::string text = is_default(name) ? "" : why(name); !text.empty())
       throw Usage("--" + name + " has no effect" + (s.asked() ? " with --from " + s.from : "") + ": " + text);
 }
 
