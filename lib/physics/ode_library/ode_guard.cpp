@@ -178,7 +178,7 @@ OdeScope::OdeScope(OdeBlocks* blocks, const void* purpose) : outer_(t_scope) {
   t_scope = this;
   if (!t_has_data && g_initialised) {
     try {
-      t_has_data = dAllocateODEDataForThread(dAllocateMaskAll) != 0;
+      t_has_data = dAllocateODEDataForThread(static_cast<unsigned>(dAllocateMaskAll)) != 0;
     } catch (const Error&) {  // it is for shapes that we have none of; the next scope tries again
     }
   }
