@@ -14,7 +14,8 @@ struct WorldGrid {
   Camera camera;     // in the frame of world 0
 
   Vec3 place(int32_t i) const {
-    return static_cast<double>(i / columns) * row + static_cast<double>(i % columns) * column;
+    const int32_t down = i / columns, across = i % columns;
+    return static_cast<double>(down) * row + static_cast<double>(across) * column;
   }
 };
 // Of `count` worlds like this one, seen as `camera` sees this one, from further away and not from below 30 degrees.

@@ -209,9 +209,11 @@ void paint_fine_tile(const Painter& painter, const IndexList& seen, int32_t x, i
   Lanes3 sum[kTileSide] = {};
   const auto trace_all = [&](int side) {
     const float share = 1 / static_cast<float>(side);
-    for (int k = 0; k < side * side; ++k)
-      trace(painter.rays, primitives, seen, cull, fx + share * (static_cast<float>(k % side) + 0.5f),
-            fy + share * (static_cast<float>(k / side) + 0.5f), &hits[k]);
+    for (int k = 0; k < side * side; ++k) {
+      const int row = k / side, column = k % side;
+      trace(painter.rays, primitives, seen, cull, fx + share * (static_cast<float>(column) + 0.5f),
+            fy + share * (static_cast<float>(row) + 0.5f), &hits[k]);
+    }
     nearby = look_around(painter, ball_about(hits, side * side), plane);
   };
   const auto color_all = [&](int side, RaySet (&rays)(int)) {  // whether any point is half in shadow
