@@ -42,11 +42,12 @@ page="none: $("$redman" render --task "$task" --policy "$policy" --camera close 
 part "done"
 
 row() { # row NAME JSON
-  printf '%-10s %8.2f %8.2f %8.2f %7.0f%%\n' "$1" "$(number return_mean "$2")" "$(number cost_mean "$2")" \
-    "$(number cost_limit "$trained")" "$(awk "BEGIN { print 100 * $(number fall_rate "$2") }")"
+  printf '%-10s %8.2f %8.2f %8.2f %7.0f%% %7.0f%%\n' "$1" "$(number return_mean "$2")" "$(number cost_mean "$2")" \
+    "$(number cost_limit "$trained")" "$(awk "BEGIN { print 100 * $(number success_rate "$2") }")" \
+    "$(awk "BEGIN { print 100 * $(number fall_rate "$2") }")"
 }
 echo
-printf '%-10s %8s %8s %8s %8s\n' policy return cost limit falls
+printf '%-10s %8s %8s %8s %8s %8s\n' policy return cost limit success falls
 row trained "$agent"
 row random "$random"
 echo
