@@ -194,8 +194,8 @@ RDM_API rdm_result rdm_pool_get_initial_mean(const rdm_pool *p, float *action);
  * which reads back exactly. RANGE for a longer text: rdm_pool_get_settings has it. After the task's
  * num_options follow the keys with a FIELD that were set, in order, then RANGE. */
 RDM_API rdm_result rdm_pool_setting_at(const rdm_pool *p, int32_t i, const char **key, char *text);
-/* All options as text [capacity] of lines key=value, except those that option level draws; given as
- * settings they make the same pool again. */
+/* All options as text [capacity] of lines key=value, except those that option level draws and those
+ * of joints and links that were not set; given as settings they make the same pool again. */
 RDM_API rdm_result rdm_pool_get_settings(const rdm_pool *p, char *text, size_t capacity,
                                          size_t *size);
 

@@ -330,7 +330,8 @@ size_t Options::print_lines(char* out, size_t capacity) const {
     for (int32_t i = 0; i < count(); ++i) {
       if (spec(i).open && !open_name(i)) continue;
       // given by its own value, the level would no more draw it
-      if (drawn && spec(i).levelled && !rows_[static_cast<size_t>(i)].given) continue;
+      if (drawn && spec(i).levelled && !given(i)) continue;
+      if (spec(i).if_given && !given(i)) continue;
       char text[kOptionTextSize];
       const char* value = print(i, text) ? text : rows_[static_cast<size_t>(i)].long_text.data();
       put(key(i), std::strlen(key(i)));

@@ -33,6 +33,8 @@ struct OptionSpec {
   bool levelled = false;  // option level says what is drawn of it, unless it is given
   bool open = false;      // what stands behind the last '.' of the key is any name
   bool chooses = false;   // what other rows the table has follows from it
+  bool if_given =
+      false;  // counts where it was given alone: what it stands for may have other values than the default
   OptionLevel level = OptionLevel::kAdvanced;
 };
 
@@ -71,6 +73,12 @@ constexpr OptionSpec open_option(OptionSpec row) {
 // The row, from which follows what other rows there are.
 constexpr OptionSpec choosing(OptionSpec row) {
   row.chooses = true;
+  return row;
+}
+
+// The row, whose default is one of several values that it stands for.
+constexpr OptionSpec counting_if_given(OptionSpec row) {
+  row.if_given = true;
   return row;
 }
 
@@ -144,8 +152,9 @@ class Options {
   OptionRange range(const char* key) const;  // of a number or integer, {x, x} for a single one
   bool flag(const char* key) const;
   const char* text(const char* key) const;
-  int32_t word(const char* key) const;                // of a text with choices: which of them it is, from 0
-  bool given(const char* key) const;                  // set by the host, not the default
+  int32_t word(const char* key) const;  // of a text with choices: which of them it is, from 0
+  bool given(const char* key) const;    // set by the host, not the default
+  bool given(int32_t i) const { return row(i).given; }
   const OptionSpec* spec_of(const char* key) const {  // null: unknown
     const int32_t i = find(key);
     return i < 0 ? nullptr : row(i).spec;
@@ -161,8 +170,8 @@ class Options {
   // Current value as text ("0.5", "0.7..1.3", "egg") of kOptionTextSize bytes, which reads back exactly.
   // False for a text that is longer: it is cut.
   bool print(int32_t i, char* out) const;
-  // All values as lines for set_lines, but where a level draws for those that it draws, into at most
-  // `capacity` bytes (none when it is less than all need); the length without terminator.
+  // All values as lines for set_lines, but for those that count if given and were not, and where a level draws
+  // for those that it draws, into at most `capacity` bytes (none when it is less than all need); the length without terminator.
   size_t print_lines(char* out, size_t capacity) const;
   Vector<char> lines() const;  // these, with the terminator
   // Changes the default of one key (a task's or an algorithm's own default); bounds are checked.

@@ -24,6 +24,7 @@ uint64_t ResolvedPoolConfig::hash_options() const {
     } else {
       const OptionRange value = options.range(i);
       hash = hash_bytes(&value.low, sizeof value.low, hash);
+      if (spec.if_given && options.given(i)) hash = hash_bytes(spec.key, 1, hash);  // not the default
       if (value.drawn()) hash = hash_bytes(&value.high, sizeof value.high, hash);
     }
   }

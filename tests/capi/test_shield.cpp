@@ -73,7 +73,9 @@ void play(const Pool& pool, const Shield& shield, int32_t steps, const rdm_polic
 TEST(Shields, LetNoCostComeWhateverIsProposed) {
   for (const auto& [task, settings, steps] :
        {std::tuple{"hand_over_wall", "action_repeat=2", 40}, std::tuple{"hand_over_safe_joint", kHeld, 20},
-        std::tuple{"reorient", "action_repeat=3", 20}, std::tuple{"grasp", "action_repeat=4", 20}}) {
+        std::tuple{"reorient", "action_repeat=3", 20}, std::tuple{"grasp", "action_repeat=4", 20},
+        std::tuple{"grasp", "action_repeat=4\narm=ur5e", 20},
+        std::tuple{"jenga", "action_repeat=4\npair=paper", 12}}) {
     const Policy policy = shipped(task);
     // no throw at random comes near the wall; what never moves drops the egg
     const rdm_policy *player = std::string(task) == "hand_over_wall" ? policy.get() : nullptr,

@@ -4869,8 +4869,8 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_pool_get_settings": Function(
         c_int32, {"p": c_void_p, "text": c_void_p, "capacity": c_size_t, "size": c_void_p},
         {}, False,
-        """All options as text [capacity] of lines key=value, except those that option level draws; given as
-        settings they make the same pool again.
+        """All options as text [capacity] of lines key=value, except those that option level draws and those
+        of joints and links that were not set; given as settings they make the same pool again.
         """),
     "rdm_pool_get_buffers": Function(
         c_int32, {"p": c_void_p, "io": POINTER(rdm_buffers)},

@@ -47,6 +47,8 @@ const char* field_name(JointField field) {
 
 }  // namespace
 
+// One key may stand for links of two robots, and a link that carries a hand weighs more than its own: a default is
+// that of the first robot alone, which nothing but a value that was given replaces.
 void add_robot_rows(const Robot& robot, OptionTable& table) {
   for (const RobotLink& link : robot.links)
     for (const JointRow& row : kJointRows) {
@@ -54,8 +56,8 @@ void add_robot_rows(const Robot& robot, OptionTable& table) {
       const double low = row.field == JointField::kKd ? std::min(1e-4, link.kd) : 0;
       const OptionTable::Key key = OptionTable::make_key("joint", link.joint, field_name(row.field));
       if (table.has(key.text)) continue;  // of both hands
-      OptionSpec spec =
-          number_option("", link.*row.value, low, std::max(row.high, link.*row.value), row.help);
+      OptionSpec spec = counting_if_given(
+          number_option("", link.*row.value, low, std::max(row.high, link.*row.value), row.help));
       spec.range = row.field != JointField::kArmature;
       table.add("joint", link.joint, field_name(row.field), spec);
     }
@@ -63,8 +65,8 @@ void add_robot_rows(const Robot& robot, OptionTable& table) {
     const OptionTable::Key key = OptionTable::make_key("link", link.name, "mass");
     if (link.mass == 0 || table.has(key.text)) continue;
     table.add("link", link.name, "mass",
-              drawable(number_option("", link.mass, 1e-4, 1000,
-                                     "mass of the link, kg; its moments of inertia scale with it")));
+              counting_if_given(drawable(number_option(
+                  "", link.mass, 1e-4, 1000, "mass of the link, kg; its moments of inertia scale with it"))));
   }
 }
 
