@@ -82,10 +82,10 @@ void give_option(const Options& options, int32_t i, const char** key, char* text
   need(text, "text");
   need_index(i, options.count(), "i");
   char value[RDM_TEXT_SIZE];
+  *key = options.key(i);
   if (!options.print(i, value))
     fail(Code::kRange, "option %s: its text is longer than %d bytes; %s gives all of it", options.key(i),
          RDM_TEXT_SIZE - 1, settings_call);
-  *key = options.key(i);
   std::strcpy(text, value);
 }
 

@@ -21,6 +21,7 @@ Evaluation evaluate(const ActorChoice& choice, PoolSettings settings, const std:
   settings.envs = std::min(settings.envs, episodes);
   redman::Pool pool = make_pool(counted(settings), RDM_AUTORESET_OFF);
   Evaluation out;
+  out.task = task_at(pool.spec().task).name;
   out.limits = cost_limits(pool, limits);
   for (const rdm_cost_info& c : task_costs(pool.spec().task)) out.costs.push_back(c.name);
   Actor actor(choice, pool, stochastic, settings.seed);
@@ -62,7 +63,8 @@ std::string evaluation_text(const Evaluation& e, int32_t episodes) {
   const Spread& spread = e.spread;
   const std::vector<double>& of_return = spread.return_quantiles;
   const std::string mean_return = measured(s.return_mean, s.return_stderr);
-  std::string text = format("%d episode%s: return ", episodes, episodes == 1 ? "" : "s") + mean_return;
+  std::string text =
+      format("%d episode%s of %s: return ", episodes, episodes == 1 ? "" : "s", e.task.c_str()) + mean_return;
   Table table({"sum per episode", "mean +- se", "95% interval", "median", "90% quantile", "CVaR", "limit",
                "above limit"});
   table.add({"return", mean_return, interval_text(spread.return_interval), format("%.3f", of_return[1]),

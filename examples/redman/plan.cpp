@@ -47,6 +47,7 @@ Report run_plan(PlanFlags flags) {
   flags.pool.envs = std::min(flags.pool.envs, flags.episodes);
   redman::Pool pool = make_pool(flags.pool, RDM_AUTORESET_OFF);
   Evaluation e;
+  e.task = task_at(pool.spec().task).name;
   e.limits = cost_limits(pool, choice.limits);
   for (const rdm_cost_info& c : task_costs(pool.spec().task)) e.costs.push_back(c.name);
   Actor actor(choice, pool, false, flags.pool.seed);

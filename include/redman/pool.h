@@ -190,9 +190,10 @@ RDM_API rdm_result rdm_pool_field_at(const rdm_pool *p, int32_t i,
 /* The mean action [action_dim] that a new policy starts from: the task's start pose, which usually
  * differs from the action of RDM_BASELINE_HOLD. */
 RDM_API rdm_result rdm_pool_get_initial_mean(const rdm_pool *p, float *action);
-/* The value of option i of the task in this pool: its key, and the value as text [RDM_TEXT_SIZE],
- * which reads back exactly. RANGE for a longer text: rdm_pool_get_settings has it. After the task's
- * num_options follow the keys with a FIELD that were set, in order, then RANGE. */
+/* The value of option i of this pool: its key, and the value as text [RDM_TEXT_SIZE], which reads
+ * back exactly. RANGE for a longer text, with *key set: rdm_pool_get_settings has it. The rows are
+ * those of rdm_task_option_at, but for joints and links, which are those of the pool's robots. The
+ * keys with a FIELD that were set follow, in order, then RANGE. */
 RDM_API rdm_result rdm_pool_setting_at(const rdm_pool *p, int32_t i, const char **key, char *text);
 /* All options as text [capacity] of lines key=value, except those that option level draws and those
  * of joints and links that were not set; given as settings they make the same pool again. */

@@ -115,6 +115,16 @@ wrong 2 '--overwrite is for --out, which is missing' train $small --overwrite
 wrong 2 'it is not one of auto, urdf, mjcf, robot' robot x.urdf --format obj
 told '--policy demo: task ball_run has none' baseline --task ball_run --policy demo
 
+# Robots: their own joints can be set, and one that nothing uses is said.
+"$tool" eval --task grasp --set hand=barrett --set joint.bh_j11_joint.kp=20 --policy zero --episodes 1 > /dev/null || say 'a joint of another hand'
+"$tool" eval --task grasp --set arm=ur5e --set link.wrist_3_link.mass=2 --policy zero --episodes 1 > out || say 'a link of an arm'
+grep -q 'of grasp: return' out || say 'the task is not named'
+wrong 2 'nearest is joint.bh_j11_joint.kp' eval --task grasp --set hand=barrett --set joint.bh_j11_jint.kp=20 --policy zero
+if "$tool" robot barrett_bh282 --name other --out other.robot > /dev/null 2>&1; then
+  told 'nothing uses robot other; give --set hand=other' eval --task grasp --robot other.robot --policy zero --episodes 1
+  silent 'nothing uses' eval --task grasp --robot other.robot --set hand=other --policy zero --episodes 1
+fi
+
 # A policy away from its run.
 cp idle/policy.rdm alone.rdm
 for command in 'eval --episodes 1' 'rollout' 'render --size 8x8 --out b.png'; do

@@ -4862,9 +4862,10 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_pool_setting_at": Function(
         c_int32, {"p": c_void_p, "i": c_int32, "key": POINTER(c_char_p), "text": c_void_p},
         {}, False,
-        """The value of option i of the task in this pool: its key, and the value as text [RDM_TEXT_SIZE],
-        which reads back exactly. RANGE for a longer text: rdm_pool_get_settings has it. After the task's
-        num_options follow the keys with a FIELD that were set, in order, then RANGE.
+        """The value of option i of this pool: its key, and the value as text [RDM_TEXT_SIZE], which reads
+        back exactly. RANGE for a longer text, with *key set: rdm_pool_get_settings has it. The rows are
+        those of rdm_task_option_at, but for joints and links, which are those of the pool's robots. The
+        keys with a FIELD that were set follow, in order, then RANGE.
         """),
     "rdm_pool_get_settings": Function(
         c_int32, {"p": c_void_p, "text": c_void_p, "capacity": c_size_t, "size": c_void_p},

@@ -127,12 +127,20 @@ std::string robot_text(const rdm_robot_def&) {
 }
 #endif
 
+namespace {
+std::vector<std::pair<std::string, int32_t>> g_given;  // as the list of robots itself, of the process
+}  // namespace
+
+const std::vector<std::pair<std::string, int32_t>>& given_robots() {
+  return g_given;
+}
+
 void add_robot_flag(CLI::App& command) {
   command
       .add_option_function<std::vector<std::string>>(
           "--robot",
           [](const std::vector<std::string>& files) {
-            for (const std::string& file : files) load_robot(file);
+            for (const std::string& file : files) g_given.emplace_back(file, load_robot(file));
           },
           "file of a robot (.robot, URDF, MJCF) for --set hand=NAME or arm=NAME; repeatable")
       ->allow_extra_args(false)

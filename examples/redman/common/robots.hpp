@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace CLI {
@@ -41,5 +42,7 @@ constexpr char kOwnGroup[] = "Robots and objects of your own";
 
 // --robot FILE, repeatable: loads them while the command line is read, before any task is made.
 void add_robot_flag(CLI::App& command);
+// The files that were given so, and the numbers of their robots.
+const std::vector<std::pair<std::string, int32_t>>& given_robots();
 
 }  // namespace tool

@@ -40,8 +40,16 @@ std::string option_of(const Options& options, const std::string& key) {
   return out;
 }
 
-std::string pool_setting(const redman::Pool& pool, int32_t i, const std::string& key) {
-  return setting(pool, rdm_pool_setting_at, i, key);
+Options pool_settings(const redman::Pool& pool) {
+  Options out;
+  for (int32_t i = 0;; ++i) {
+    const char* key = nullptr;
+    char text[RDM_TEXT_SIZE];
+    const rdm_result r = rdm_pool_setting_at(pool.get(), i, &key, text);
+    if (r == RDM_ERROR_RANGE && !key) return out;  // there are no more
+    if (r != RDM_ERROR_RANGE) redman::check(r);
+    out.emplace_back(key, r == RDM_OK ? text : option_of(read_settings(pool.settings()), key));
+  }
 }
 
 std::string agent_setting(const redman::Agent& agent, const std::string& algo, const std::string& wanted) {

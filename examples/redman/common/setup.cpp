@@ -13,6 +13,7 @@
 #include "common/numbers.hpp"
 #include "common/objects.hpp"
 #include "common/robots.hpp"
+#include "common/setting.hpp"
 #include "common/task_files.hpp"
 #include "common/text.hpp"
 
@@ -302,6 +303,24 @@ Owner owner_of(const std::vector<rdm_option_spec>& task, const std::vector<rdm_o
   return owner.task || owner.algo ? owner : Owner{true, true};  // neither: each names its words
 }
 
+bool is_of_robot(const std::string& key) {
+  return same_name(key.substr(0, 6), "joint.") || same_name(key.substr(0, 5), "link.");
+}
+
+// The keys that a pool has with what the task's table knows of `sets`: its robots decide on those of joints and links.
+std::vector<std::string> keys_of_robots(const PoolSettings& pool, const std::vector<std::string>& sets,
+                                        const std::vector<rdm_option_spec>& task_table) {
+  PoolSettings one = pool;
+  one.envs = 1, one.threads = 0;
+  for (const std::string& text : sets)
+    if (const auto pair = split_pair(text, "--set");
+        has_option(task_table, pair.first) && !is_of_robot(pair.first))
+      one.options.push_back(pair);
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : pool_settings(make_pool(one, RDM_AUTORESET_OFF))) keys.push_back(key);
+  return keys;
+}
+
 }  // namespace
 
 void apply_sets(const std::vector<std::string>& sets, PoolSettings& pool, AgentSettings* agent,
@@ -309,11 +328,17 @@ void apply_sets(const std::vector<std::string>& sets, PoolSettings& pool, AgentS
   const auto task_table = task_options(find_task(pool.task));
   const auto algo_table = agent ? algo_options(find_algo(agent->algo)) : std::vector<rdm_option_spec>();
   GivenOnce to_task, to_algo;
+  std::vector<std::string> own;  // keys of joints and links of the robots that `sets` choose
   for (const std::string& text : sets) {
     const auto pair = split_pair(text, "--set");
     if (printable(text) != text)
       throw Usage("--set " + text + ": it has control characters, or is not UTF-8");
     bool of_algo = has_option(algo_table, pair.first), of_task = has_option(task_table, pair.first);
+    if (!of_algo && !of_task && is_of_robot(pair.first)) {
+      if (own.empty()) own = keys_of_robots(pool, sets, task_table);
+      of_task =
+          std::any_of(own.begin(), own.end(), [&](const auto& key) { return same_name(key, pair.first); });
+    }
     if (of_algo && of_task) {
       const Owner owner = owner_of(task_table, algo_table, pair.first, pair.second);
       of_task = owner.task, of_algo = owner.algo;
@@ -324,6 +349,7 @@ void apply_sets(const std::vector<std::string>& sets, PoolSettings& pool, AgentS
     std::vector<std::string> keys;
     append_keys(task_table, keys);
     append_keys(algo_table, keys);
+    keys.insert(keys.end(), own.begin(), own.end());
     const std::string owner =
         agent ? "neither task " + pool.task + " nor algorithm " + agent->algo + " has option "
               : "task " + pool.task + " has no option ";
@@ -398,6 +424,20 @@ void say_idle_of(const std::string& text, const Belongs& b, const std::vector<rd
 }  // namespace
 
 void say_idle(const std::vector<std::string>& sets, const PoolSettings& pool, const AgentSettings* agent) {
+  const bool chooses =
+      has_option(task_options(find_task(pool.task)), "hand");  // a task of text names its robots itself
+  for (const auto& [file, robot] : given_robots()) {
+    rdm_robot info = RDM_INIT(rdm_robot);
+    redman::check(rdm_robot_at(robot, &info));
+    const bool used =
+        std::any_of(pool.options.begin(), pool.options.end(), [&, number = robot](const auto& o) {
+          int32_t named = -1;
+          return rdm_robot_find(o.second.c_str(), &named) == RDM_OK && named == number;
+        });
+    if (chooses && !used)
+      std::fprintf(stderr, "--robot %s: nothing uses robot %s; give --set hand=%s, or arm=%s\n",
+                   printable(file).c_str(), info.name, info.name, info.name);
+  }
   for (const std::string& text : sets) {
     const std::string key = split_pair(text, "--set").first;
     for (const Belongs& b : kOfTasks)

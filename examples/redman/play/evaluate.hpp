@@ -9,6 +9,7 @@
 namespace tool {
 
 struct Evaluation {
+  std::string task;
   std::vector<double> limits;  // [cost_dim], < 0: none
   std::vector<std::string> costs;
   Summary summary;

@@ -202,10 +202,7 @@ std::string Recorder::metadata(const RecordNote& note, uint64_t steps) const {
     const double limit = limits[costs.size()];
     costs.push_back({{"name", c.name}, {"help", c.help}, {"limit", limit < 0 ? Json() : Json(limit)}});
   }
-  int32_t index = 0;
-  for (const rdm_option_spec& o : task_options(spec.task)) {
-    options[o.key] = pool_setting(pool_, index++, o.key);
-  }
+  for (const auto& [key, value] : pool_settings(pool_)) options[key] = value;
   for (const auto& [key, value] : note.options) set.push_back(key + "=" + value);
   for (const Column& c : columns_) arrays[c.name] = c.help;
   arrays["task"] = "name, UTF-8";

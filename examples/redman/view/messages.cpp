@@ -1,6 +1,7 @@
 // What a page and a session say to each other (messages of the page in view.js).
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <redman/sense.hpp>
 
 #include "common/names.hpp"
@@ -187,13 +188,16 @@ Json Session::scene() const {
       names[static_cast<size_t>(j.action)] = j.name;
   for (size_t i = 0; i < names.size(); ++i)
     actions.push_back(names[i].empty() ? format("action[%zu]", i) : names[i]);
-  int32_t index = 0;
+  std::map<std::string, std::string> values;
+  for (const auto& [key, value] : pool_settings(*pool_)) values[key] = value;
   for (const rdm_option_spec& o : task_options(spec.task)) {
+    const auto value = values.find(o.key);
+    if (value == values.end()) continue;  // of a joint that this pool's robots lack
     options.push_back({{"key", o.key},
                        {"help", o.help},
                        {"kind", o.kind},
                        {"level", o.level},
-                       {"value", pool_setting(*pool_, index++, o.key)},
+                       {"value", value->second},
                        {"choices", o.choices ? o.choices : ""},
                        {"low", o.low},
                        {"high", o.high}});
