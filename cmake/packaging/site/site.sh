@@ -37,9 +37,16 @@ RDM_STAGE=$stage RDM_VERSION=$3 REDMAN_LIBRARY=$4 PYTHONPATH=$root/capi/python \
 # Debian's furo takes normalize.css from the root of a web server; site.css has what is needed of it
 sed -i '/^@import url(\/javascript\//d' "$site/html/_static/styles/furo.css"
 [ ! -d "$2/reference/html" ] || cp -r "$2/reference/html" "$site/html/c"
+cat > "$site/html/index.html" << 'H'
+<!DOCTYPE html>
+<html lang="en"><meta charset="utf-8"><meta http-equiv="refresh" content="0; url=README.html"><title>redman</title>
+<p>The site begins at <a href="README.html">README.html</a>.
+H
 # no request to another host, and none to the root of the host: scripts, styles, fonts and pictures are all of the site
 if grep -rlE '(src|href)="((https?:)?//[^"]*\.(js|css|woff2?|png|svg|ico)"|/)|@import +url\(.?(https?:|/)|fonts\.googleapis' "$site/html" --include='*.html' --include='*.css'; then
   echo "these pages ask another host for something" >&2
   exit 1
 fi
-echo "$(find "$site/html" -name '*.html' -not -path '*/c/*' | wc -l) pages, and those of the C headers: $site/html/README.html"
+has() { grep -q "$2" "$site/html/$1" || { echo "$1 has no $2" >&2; exit 1; }; }
+has index.html url=README.html
+echo "$(find "$site/html" -name '*.html' -not -path '*/c/*' | wc -l) pages, and those of the C headers: $site/html/index.html"
