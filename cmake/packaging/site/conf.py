@@ -64,12 +64,18 @@ BEHIND = ("examples/results/", "examples/manual/tasks/", "examples/manual/algori
 
 
 def plain_links(app, name, source):
-    """Links to folders and to files that are no pages lead to the words alone: a page stands for itself, without the tree."""
+    """Links to folders and to files that are no pages lead to the words alone: a page stands for itself, without the tree. Links to
+    headers lead to Doxygen's pages of them."""
     folder = (stage / name).parent
+    headers = "include/redman/"
 
     def kept(match):
         target = match[2].split("#")[0]
         path = folder / target
+        inside = os.path.normpath(os.path.join(os.path.dirname(name), target))
+        if inside.startswith(headers) and inside.endswith(".h") and path.name != "deprecated.h":  # it has no page
+            page = "index" if path.name == "redman.h" else f"{path.stem}_8h"
+            return f'<a href="{os.path.relpath("c", os.path.dirname(name) or ".")}/{page}.html">{match[1]}</a>'
         gone = target and not re.match(r"[a-z]+:", target) and (path.is_dir() or Path(target).name.startswith("."))
         return match[1] if gone else match[0]
 

@@ -49,4 +49,13 @@ if grep -rlE '(src|href)="((https?:)?//[^"]*\.(js|css|woff2?|png|svg|ico)"|/)|@i
 fi
 has() { grep -q "$2" "$site/html/$1" || { echo "$1 has no $2" >&2; exit 1; }; }
 has index.html url=README.html
+if grep -roE '_downloads/[^"]*\.h"' "$site/html" --include='*.html' | grep -v /deprecated.h; then
+  echo "these links download a header that has a page" >&2
+  exit 1
+fi
+if [ -d "$site/html/c" ]; then
+  for page in $(grep -rhoE 'href="[./]*/?c/[a-z_0-9]+\.html' "$site/html" --include='*.html' | sed 's|.*c/||' | sort -u); do
+    [ -f "$site/html/c/$page" ] || { echo "a link leads to c/$page, which is not there" >&2; exit 1; }
+  done
+fi
 echo "$(find "$site/html" -name '*.html' -not -path '*/c/*' | wc -l) pages, and those of the C headers: $site/html/index.html"
