@@ -1,6 +1,9 @@
 """The site: manual, pages of the tree and Python's reference, by Sphinx; cmake/packaging/site/site.sh calls it."""
+import ast
 import os
 import re
+import textwrap
+from itertools import takewhile
 from pathlib import Path
 
 stage = Path(os.environ["RDM_STAGE"])
@@ -15,6 +18,7 @@ include_patterns = ["*.md", "examples/**.md", "tasks/*.md", "algos/*.md", "lib/*
 exclude_patterns = ["tests/old", "**/node_modules", "examples/results/short.md"]
 myst_heading_anchors = 4
 suppress_warnings = ["myst.header"]  # a page may begin with its table
+highlight_language = "none"  # a block without a name is a formula or a text
 html_theme = "furo"
 html_title = f"redman {version}"
 html_static_path = [str(stage / "cmake/packaging/site/site.css")]
@@ -82,19 +86,29 @@ def plain_links(app, name, source):
     source[0] = re.sub(r"\[([^][\n]*)\]\(([^)\s]*)\)", kept, source[0])
 
 
+def colours(block):
+    """Python, where the block parses as such; a table or a formula has no colours."""
+    try:
+        ast.parse(textwrap.dedent("\n".join(block)))
+    except SyntaxError:
+        return "none"
+    return "python"
+
+
 def code_in_docstrings(app, what, name, obj, options, lines):
     """Docstrings are plain text with code set in, as a terminal shows them: what is set in is code, and no more is markup."""
     if what == "module":  # stands at the margin, where Sphinx takes the code's for the text's
         lines[:] = (obj.__doc__ or "").splitlines()
     out, code = [], False
-    for line in lines:
+    for number, line in enumerate(lines):
         inner = line.startswith("    ") and line.strip()
         if inner and not code:
-            out += ["", "::", ""]
+            block = takewhile(lambda one: one.startswith("    ") or not one.strip(), lines[number:])
+            out += ["", f".. code-block:: {colours(block)}", ""]
         if code and line.strip() and not inner:
             out += [""]
         code = bool(inner) or (code and not line.strip())
-        out.append(line if inner else re.sub(r"([*_`|\\])", r"\\\1", line))
+        out.append(line if inner else re.sub(r"([*_`|\\\"])", r"\\\1", line))
     lines[:] = out
 
 
