@@ -20,6 +20,7 @@ myst_heading_anchors = 4
 suppress_warnings = ["myst.header"]  # a page may begin with its table
 highlight_language = "none"  # a block without a name is a formula or a text
 html_theme = "furo"
+html_search_scorer = str(stage / "cmake/packaging/site/scorer.js")
 html_title = f"redman {version}"
 html_static_path = [str(stage / "cmake/packaging/site/site.css")]
 html_css_files = ["site.css"]

@@ -49,6 +49,7 @@ if grep -rlE '(src|href)="((https?:)?//[^"]*\.(js|css|woff2?|png|svg|ico)"|/)|@i
 fi
 has() { grep -q "$2" "$site/html/$1" || { echo "$1 has no $2" >&2; exit 1; }; }
 has index.html url=README.html
+has _static/language_data.js WEIGHTS            # of scorer.js
 has examples/manual/algorithms/ppo_lag.html highlight-none
 has python-reference.html highlight-python
 if grep -roE '_downloads/[^"]*\.h"' "$site/html" --include='*.html' | grep -v /deprecated.h; then
