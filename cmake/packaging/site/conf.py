@@ -55,10 +55,13 @@ def add_contents(app, name, source):
     """The side bar. It names every page, those behind the manual's by folders."""
     if name == root_doc:
         tree = chapters()
-        named = {page for pages in tree.values() for page in pages} | {root_doc, "c-reference", "python-reference"}
+        next(iter(tree.values())).insert(0, "examples/manual/README")
+        tree.setdefault("Look up", [])[:0] = ["c-reference", "python-reference"]
+        named = {page for pages in tree.values() for page in pages} | {root_doc}
         rest = sorted(page for page in app.env.found_docs - named if not page.startswith(BEHIND))
+        for section, pages in (("Examples", "examples/"), ("Source", r"(?!examples/).*/"), ("Project", "[^/]*$")):
+            tree[section] = [TITLES.get(page, page) for page in rest if re.match(pages, page)]
         source[0] += "".join(contents(pages, section) for section, pages in tree.items())
-        source[0] += contents(["c-reference", "python-reference"] + rest, "More")
     elif (folder := name.removesuffix("README")) in BEHIND:
         pages = {page.removeprefix(folder) for page in app.env.found_docs if page.startswith(folder)}
         source[0] += contents(sorted(page for page in pages if page != "README" and "/" not in page))
@@ -66,6 +69,8 @@ def add_contents(app, name, source):
 
 # Folders whose pages stand behind their first one.
 BEHIND = ("examples/results/", "examples/manual/tasks/", "examples/manual/algorithms/")
+# What the side bar calls a page whose own title is for readers of its folder.
+TITLES = {"capi/python/README": "Source of the Python package <capi/python/README>"}
 
 
 def plain_links(app, name, source):
