@@ -2,41 +2,55 @@
 
     import redman
 
-    pool = redman.Pool("hand_over_safe_finger", num_envs=16, seed=7)        # worlds
+    # worlds; a step fills pool.obs, pool.reward, pool.cost, ...
+    pool = redman.Pool("hand_over_safe_finger", num_envs=16, seed=7)
     pool.reset()
-    pool.step(pool.baseline("random"))                                      # pool.obs, pool.reward, pool.cost, ...
+    pool.step(pool.baseline("random"))
 
-    run = redman.train("hand_over_safe_finger", steps=1e6, out="runs/first")    # a policy
+    # a policy
+    run = redman.train("hand_over_safe_finger", steps=1e6, out="runs/first")
     print(run.evaluate())
     actor = redman.load("runs/first").actor(pool)
     pool.step(actor())
 
-WHAT IS THERE. help(redman.Pool) and so on tell more.
+These are the public names; help(redman.Pool), for example, describes one of them.
 
-    what exists     tasks, task, algos, algo, robots, robot, objects, planner_options, shield_options
+    what exists     tasks, task, algos, algo, robots, robot, objects,
+                    planner_options, shield_options
     files           load; load_robot, load_object, load_task
     worlds          Pool, Sensors, Guard; spec, memory; Map, sample_furthest
-    learners        Agent, Epoch, CostLimits, Options; Recording, CloneReport; Ranks
-    policies        Policy, Actor, Origin, HoldWarning; Planner, PlanInfo; Shield, ShieldRow, project
-    teams           groups, Group; Policy.groups, Policy.group; algorithms mappo, mappo_lag, happo, macpo, ippo, ippo_lag
-    runs            train, sweep, Run; callbacks, Callback, Training; evaluate, Evaluation, Player; compare,
-                    Comparison; curve, Curve, Curves; stats;
-                    Episode; view, Window
-    your own        Rows, Costs: rewards and costs of train and evaluate; Task, RowTask, Verdict, Worlds, SceneBuilder; Robot.create,
+    learners        Agent, Epoch, CostLimits, Options; Recording, CloneReport;
+                    Ranks
+    policies        Policy, Actor, Origin, HoldWarning; Planner, PlanInfo;
+                    Shield, ShieldRow, project
+    teams           groups, Group; Policy.groups, Policy.group; algorithms
+                    mappo, mappo_lag, happo, macpo, ippo, ippo_lag
+    runs            train, sweep, Run; callbacks, Callback, Training; evaluate,
+                    Evaluation, Player; compare, Comparison; curve, Curve,
+                    Curves; stats; Episode; view, Window
+    your own        Rows, Costs: rewards and costs of train and evaluate; Task,
+                    RowTask, Verdict, Worlds, SceneBuilder; Robot.create,
                     Object.create, a .task file; check_task, c_function
-    environments    redman.gym, redman.sb3, redman.safety, redman.omnisafe, redman.pettingzoo; make, make_vec
-    data sets       redman.data: load, save and convert sets of episodes (.npz, .hdf5, .minari, .lerobot, .mcap); data.score
-    sharing         redman.hub: a policy with its card, in a folder or on the hub of models
-    records         Algo, Build, Camera, Cost, Field, Joint, MapInfo, Note, Object, Option, PlannerSpec, PolicyInfo, PoolStats,
-                    Poses, PretrainReport, RayHit, RecordingInfo, Robot, Shape, ShieldStats, Spec, TaskInfo
-    numbers         Autoreset, BaselineKind, Feature, JointKind, NoteKind, OptionKind, OptionLevel, ResultCode, RobotKind,
-                    Scale, ShapeKind, ShieldKind, Status
-    errors          Error, of which are AllocationError, ArgumentError, CancelledError, FileError, FormatError, InternalError,
-                    MissingFileError, NotFoundError, PhysicsError, RangeError, StateError, UnsupportedError, UsageError,
-                    VersionError
+    environments    redman.gym, redman.sb3, redman.safety, redman.omnisafe,
+                    redman.pettingzoo; make, make_vec
+    data sets       redman.data: load, save and convert sets of episodes (.npz,
+                    .hdf5, .minari, .lerobot, .mcap); data.score
+    sharing         redman.hub: a policy with its card, in a folder or on the
+                    hub of models
+    records         Algo, Build, Camera, Cost, Field, Joint, MapInfo, Note,
+                    Object, Option, PlannerSpec, PolicyInfo, PoolStats, Poses,
+                    PretrainReport, RayHit, RecordingInfo, Robot, Shape,
+                    ShieldStats, Spec, TaskInfo
+    numbers         Autoreset, BaselineKind, Feature, JointKind, NoteKind,
+                    OptionKind, OptionLevel, ResultCode, RobotKind, Scale,
+                    ShapeKind, ShieldKind, Status
+    errors          Error, of which are AllocationError, ArgumentError,
+                    CancelledError, FileError, FormatError, InternalError,
+                    MissingFileError, NotFoundError, PhysicsError, RangeError,
+                    StateError, UnsupportedError, UsageError, VersionError
     the library     build, features, version
 
-RULES. Arrays are numpy's, [rows][...], in SI units: m, rad, N, s. pool.obs, pool.reward and the like are views that the next
+Arrays are numpy's, [rows][...], in SI units: m, rad, N, s. pool.obs, pool.reward and the like are views that the next
 step overwrites: copy what you want to keep. The same seed gives the same bytes for any number of threads. For a wrong
 argument, the error says what it may be; an error is also the Python exception that one would expect: a NotFoundError is a
 LookupError. A file may be given instead of a name: Pool("press.task"), options={"hand": "my.urdf", "object": "mug.object"},
