@@ -23,6 +23,8 @@ const char* reason_of(tinyxml2::XMLError e) {
       return "the declaration <?xml ...?> must come first in the file, even before comments";
     case tinyxml2::XML_ERROR_PARSING_ATTRIBUTE:
       return "an attribute that is not name=\"value\", or occurs twice";
+    case tinyxml2::XML_ERROR_PARSING:
+      return "the file ends within an element, or a tag is not closed";
     case tinyxml2::XML_ERROR_PARSING_TEXT:
       return "a text that does not end";
     case tinyxml2::XML_ERROR_PARSING_CDATA:

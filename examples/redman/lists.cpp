@@ -66,9 +66,9 @@ Json task_json(int32_t index, const Presets& all_presets) {
 
 std::string task_text(int32_t index) {
   const rdm_task t = task_at(index);
-  std::string out =
-      format("%s: %s\n%d observations, %d actions, %d costs, %d steps of %.4f s\n\n", t.name, t.summary,
-             t.obs_dim, t.action_dim, t.cost_dim, t.max_steps, static_cast<double>(t.control_dt));
+  std::string out = format("%s: %s\n%d observations, %d actions, %d cost%s, %d steps of %.4f s\n\n", t.name,
+                           t.summary, t.obs_dim, t.action_dim, t.cost_dim, t.cost_dim == 1 ? "" : "s",
+                           t.max_steps, static_cast<double>(t.control_dt));
   Table fields({"field", "unit of 1", "first entry", "count", "in the presets"}),
       costs({"cost column", "limit on its sum", "value in a control step"});
   const std::vector<rdm_field_info> parts = task_fields(index);

@@ -185,8 +185,8 @@ Report run_render(RenderFlags flags) {
   }
   std::string text;
   if (frames > 0)
-    text = format("%dx%d pixels, %d pictures at %.1f per second\n", width, height, frames,
-                  frames / std::max(seconds, 1e-9));
+    text = format("%dx%d pixels, %d picture%s at %.1f per second\n", width, height, frames,
+                  frames == 1 ? "" : "s", frames / std::max(seconds, 1e-9));
   if (!flags.html.empty() || !flags.glb.empty()) {
     const Playback playback = record(flags, choice, played);
     write_playback(flags, playback, json, files, text);

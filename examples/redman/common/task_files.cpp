@@ -87,14 +87,16 @@ void load_own_files(const std::string& task, const OwnFiles& files, const std::s
     const auto known = loaded().robots.find(name);
     if (known != loaded().robots.end() && known->second == text) continue;
     if (rdm_robot_find(name.c_str(), &index) == RDM_OK)
-      throw Failure(where + ": its robot " + name + " differs from the one of that name that is loaded");
+      throw Failure(where + ": its robot " + name +
+                    " differs from the one of that name that is loaded; leave out --robot");
     load_robot_text(text, where);
   }
   for (const auto& [name, text] : files.objects) {
     const auto known = loaded().objects.find(name);
     if (known != loaded().objects.end() && known->second == text) continue;
     if (rdm_object_find(name.c_str(), &index) == RDM_OK)
-      throw Failure(where + ": its object " + name + " differs from the one of that name that is loaded");
+      throw Failure(where + ": its object " + name +
+                    " differs from the one of that name that is loaded; leave out --object");
     load_object_text(text, where);
   }
   if (files.task.empty()) return;
