@@ -224,6 +224,30 @@ class Curves(unittest.TestCase):
         self.assertEqual(len(lines), 2)
 
 
+class Algorithms(unittest.TestCase):
+    def test_each_trains(self):
+        for algo in redman.algos():
+            with self.subTest(algo):
+                run = redman.train("bandit", algo, steps=32, envs=2, threads=0, horizon=16, progress=False)
+                self.assertEqual((run.algo, run.env_steps), (algo, 32))
+
+    @unittest.skipUnless(TOOL, "the command-line tool was not built")
+    def test_one_with_a_replay_memory_is_the_tool_s(self):
+        with tempfile.TemporaryDirectory() as folder:
+            ours, theirs = Path(folder, "a"), Path(folder, "b")
+            redman.train("bandit", "td3_lag", steps=2000, envs=4, seed=1, horizon=64, progress=False, out=ours, threads=0)
+            tool("train", "--task", "bandit", "--algo", "td3_lag", "--steps", 2000, "--envs", 4, "--seed", 1, "--set", "horizon=64",
+                 "--out", theirs)
+            for name in ("config.json", "policy.rdm"):
+                self.assertEqual(Path(ours, name).read_bytes(), Path(theirs, name).read_bytes(), name)
+
+    def test_what_one_cannot_do_is_said(self):
+        for wrong, words in (({"algo": "td3", "from_": redman.Policy.trained("bandit")}, "from_: td3 cannot begin with a teacher"),
+                             ({"algo": "td3", "imitation": 1}, "algorithm ppo has"), ({"algo": "td3", "encoder": "16"}, "option encoder")):
+            with self.assertRaisesRegex(redman.Error, words):
+                redman.train("bandit", steps=32, envs=2, horizon=16, progress=False, **wrong)
+
+
 class Pages(unittest.TestCase):
     def test_what_the_pages_show_runs(self):
         manual = sorted(str(page.relative_to(TREE)) for page in (TREE / "examples/manual").glob("*.md")

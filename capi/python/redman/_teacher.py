@@ -151,7 +151,7 @@ class Teach:
             agent.clone(recording, epochs=self.settings["clone_epochs"], patience=self.settings["clone_patience"],
                         learning_rate=self.settings["clone_rate"], learning_rate_end=self.settings["clone_rate"] / 100,
                         validation=self.settings["validation"], seed=seed)
-        imitates = float(agent.options["imitation"]) > 0
+        imitates = imitates_of(agent)
         if recording is None:
             if imitates or self.starts:
                 raise UsageError("teach: start_share and option imitation need a recording: from_=\"demo.npz\"")
@@ -163,7 +163,7 @@ class Teach:
 
     def again(self, agent: Agent, pool: Pool, seed: int) -> None:
         """Does the same for a run that is resumed, where the run still needs it."""
-        if float(agent.options["imitation"]) <= 0 and not self.starts:
+        if not imitates_of(agent) and not self.starts:
             return
         if self.recording is None and not _is_recording(self.teacher):
             raise UnsupportedError(f"resume: it still learns from {self.said!r}, which the command plays: redman train --resume")
@@ -183,6 +183,11 @@ class Teach:
             pool.set_starts(None, first + done * (last - first))
 
 
+def imitates_of(agent: Agent) -> bool:
+    """Whether the agent stays near a recording while it learns, which some algorithms have no option for."""
+    return float(agent.options.get("imitation", 0)) > 0
+
+
 def eyes(points: int, repeat: int, color: str) -> list[tuple[str, Value]]:
     """Options of a task that let its worlds show what a network of points reads."""
     return [("modality", "points"), ("points", str(points)), ("sampling", "voxel"), ("point_color", color),
@@ -190,8 +195,10 @@ def eyes(points: int, repeat: int, color: str) -> list[tuple[str, Value]]:
 
 
 def eyes_of(task: str, algo: str, of_algo: Mapping[str, Value]) -> list[tuple[str, Value]]:
-    """The same for an agent of these options; empty without option encoder."""
+    """The same for an agent of these options; empty without an encoder, which some algorithms have no option for."""
     known = _discovery.algo(algo).options
+    if "encoder" not in known:
+        return []
     defaults = _discovery.task(task).defaults
 
     def value(key: str) -> str:

@@ -117,7 +117,7 @@ def train(task: Any = None, algo: Any = "ppo_lag", steps: Optional[float] = None
         run = redman.train(resume="runs/first", steps=2e6)
         runs = redman.train(["grasp", "jenga"], seed=range(5), out="runs")          # a list of ten runs
 
-    task: a name, an id of Gymnasium's, a .task file, or a class of your own (redman.Task). options: those of the task and
+    task: a name, an id of its environments (redman/BallRun-v0), a .task file, or a class of your own (redman.Task). options: those of the task and
     of the algorithm, as a dict or as arguments. steps: control steps of all worlds together, rounded up to whole epochs (a
     line on stderr says so); None: 1e6. threads: None uses all cores that this process may use; the bytes are the same for
     any number. time_budget: seconds after which the present epoch is the last one. The first Ctrl-C ends the run after its
@@ -132,8 +132,9 @@ def train(task: Any = None, algo: Any = "ppo_lag", steps: Optional[float] = None
 
         run = redman.train("ball_run", costs={"fast": lambda rows: rows.speed("velocity") > 2}, cost_limits=20)
 
-    costs is a dict by name; the name of a cost of the task instead of a function keeps that cost. The limits, the choice of
-    the policy, run.evaluate and the curve then refer to these functions. evaluate(folder) and resume import the functions
+    costs is a dict by name, or a function or a list of them, which go by their own names. In a dict, the name of a cost of the
+    task instead of a function keeps that cost. The limits, the choice of the policy, run.evaluate and the curve then refer to
+    these functions. evaluate(folder) and resume import the functions
     of a module, and the class of a task, by their import paths; lambdas must be given again.
 
     out: a run folder to write, which `redman eval`, `plot`, `report` and `train --resume` can read, with the curve for
@@ -304,6 +305,8 @@ def _wanted(given: Mapping[str, Any]) -> Settings:
         limits = limit if limits is None else limits
     of_task, of_algo = split_options(name, algo, asked)
     of_task = list(named_options(dict(of_task)).items())
+    if teach is not None and "replay_rows" in _discovery.algo(algo).options:
+        raise UsageError(f"from_: {algo} cannot begin with a teacher; only algorithms without a replay memory can")
     if teach is not None and not teach.acts:
         of_task = [*teach.task_options(name), *of_task]
         of_algo = [*teach.algo_options(of_algo), *of_algo]

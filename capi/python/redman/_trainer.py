@@ -34,7 +34,7 @@ from ._ranks import Ranks
 from ._rows import Array
 from ._run_folder import Note, RunFolder, Score, Tested, Times, progress_row
 from ._shield import Shield
-from ._teacher import Teach
+from ._teacher import Teach, imitates_of
 from .callbacks import Calls, Training
 
 if TYPE_CHECKING:
@@ -280,8 +280,13 @@ class Trainer(Training):
             s.own.ready(self._pool)
         names = list(self._pool.cost_names) if s.own is None else s.own.names(self._pool)
         own_costs = None if s.own is None or s.own.costs is None else names
-        self.agent = Agent(self._pool, s.algo, s.seed, s.threads, dict(s.of_algo), _limits_of(s.limits, names) or None,
-                           costs=own_costs, ranks=ranks)
+        try:
+            self.agent = Agent(self._pool, s.algo, s.seed, s.threads, dict(s.of_algo), _limits_of(s.limits, names) or None,
+                               costs=own_costs, ranks=ranks)
+        except ArgumentError as error:
+            if s.limits or not names or not str(error).startswith("cost_limits"):
+                raise
+            raise ArgumentError(f"{error}; give cost_limits={{{names[0]!r}: ...}}, or algo='ppo' to record it only") from None
         self._asked = (settings_texts(lib.rdm_agent_get_settings, self.agent._open()),
                        settings_texts(lib.rdm_pool_get_settings, self._pool._open()))
         self.cost_names = names
@@ -369,14 +374,14 @@ class Trainer(Training):
     def prepare(self) -> None:
         if self.settings.teach is not None:
             self.settings.teach.apply(self.agent, self._pool, self.settings.seed)
-        elif float(self.agent.options["imitation"]) > 0:
+        elif imitates_of(self.agent):
             raise UsageError("option imitation needs a recording: from_=\"demo.npz\"")
         self._pool.reset()
         self._plan_schedule()
 
     def _plan_schedule(self) -> None:
-        """Lets a rate that falls to 0 do so over this run, unless the caller gave a length."""
-        if "total_epochs" not in (folded(key) for key, _ in self.settings.of_algo):
+        """Lets a rate that falls to 0 do so over this run, unless the caller gave a length or the algorithm has no such rate."""
+        if "total_epochs" in self.agent.options and "total_epochs" not in (folded(key) for key, _ in self.settings.of_algo):
             self.agent.set(total_epochs=max(1, math.ceil(self.steps / self.per_epoch)))
 
     def begin(self, run: Run, folder: Optional[RunFolder], goes_on: bool = False) -> None:
@@ -449,7 +454,7 @@ class Trainer(Training):
             "cost_limits": {name: float(limit) for name, limit in named.items() if limit is not None},
             "train_cfgs": {"total_steps": s.steps, "vector_env_nums": s.envs, "threads": s.threads, "eval_every": s.eval_every,
                            "checkpoint_every": s.checkpoint_every, "tensorboard": s.events},
-            "algo_cfgs": {**self._asked[0], "total_epochs": now["total_epochs"], "steps_per_epoch": self.per_epoch},
+            "algo_cfgs": {**self._asked[0], **{key: now[key] for key in ("total_epochs",) if key in now}, "steps_per_epoch": self.per_epoch},
             "env_cfgs": self._asked[1],
             "obs_dim": pool.obs_dim, "action_dim": pool.action_dim, "layout_hash": f"{pool.spec.layout_hash:016x}",
             "build": {name: build[name] for name in ("version", "abi", "ode", "eigen", "ccd", "octomap", "precision", "compiler",
