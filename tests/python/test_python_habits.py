@@ -48,6 +48,27 @@ def unpacked(pool, count):
         raise said
 
 
+class Ids(unittest.TestCase):
+    def test_every_task_is_found_by_its_ids(self):
+        for task in redman.tasks():
+            camel = redman.gym.camel(task)
+            for name in (task, camel, f"{camel}-v0", redman.gym.env_id(task), f"Redman{camel}-v0", f"SafetyRedman{camel}-v0", f"Safety{camel}-v0"):
+                self.assertEqual(redman.task(name).name, task)
+
+    def test_they_are_names_wherever_a_task_is_named(self):
+        for name in ("TwoState", "redman/TwoState-v0", "RedmanTwoState-v0", "SafetyRedmanTwoState-v0"):
+            self.assertEqual(redman.Pool(name).task.name, "two_state")
+            redman.make(name).close()
+            self.assertEqual(redman.evaluate("zero", name, episodes=1).episodes, 1)
+            self.assertEqual(redman.spec(name).obs_dim, redman.spec("two_state").obs_dim)
+            self.assertEqual(redman.train(name, steps=32, envs=2, horizon=16, progress=False).task, "two_state")
+
+    def test_other_words_are_refused(self):
+        for word, said in (("redman/TwoStaet-v0", "nearest is two_state"), ("SafetyNothing-v0", "Nothing: unknown"), ("Nothing", "Nothing: unknown")):
+            with self.assertRaisesRegex(redman.NotFoundError, said):
+                redman.Pool(word)
+
+
 PANDAS = WORKS if importlib.util.find_spec("pandas") else "pip install pandas"
 # What the line is, the line, and what comes of it: it works, or the words of its error.
 HABITS = (

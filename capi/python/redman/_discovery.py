@@ -198,17 +198,28 @@ def task(name: TaskName) -> TaskInfo:
 
 
 def task_name(task: TaskName) -> str:
-    """The name of a task that is given by its name, as a TaskInfo, a .task file, its id in Gymnasium (redman/BallRun-v0), or
-    as the class of a task in Python, which is then registered."""
+    """The name of a task that is given by its name, as a TaskInfo, a .task file, an id of its environments (redman/BallRun-v0),
+    or as the class of a task in Python, which is then registered."""
     if isinstance(task, TaskInfo):
         return task.name
     if isinstance(task, type) and hasattr(task, "register"):
         return task.register()
     if not isinstance(task, (str, os.PathLike)):
         raise UsageError(f"task: it must be the name of a task, a .task file or a subclass of redman.Task, not {task!r}")
-    task = named("task", task)
-    found = re.fullmatch(r"redman/(\w+)-v\d+", task)
-    return found[1] if found else task
+    return _of_id(named("task", task))
+
+
+# Ids of redman.gym, safety and omnisafe, also without their prefix or version.
+_ID = re.compile(r"(?:redman/|SafetyRedman|Safety|Redman)?(\w+?)(?:-v\d+)?")
+
+
+def _of_id(word: str) -> str:
+    """The task that an id stands for; a word that is no id stays."""
+    found = _ID.fullmatch(word)
+    if not found or not lib.rdm_task_find(encoded(word, "task"), byref(c_int32())):
+        return word
+    short = found[1].replace("_", "").lower()
+    return next((name for name in tasks() if name.replace("_", "").lower() == short), found[1])
 
 
 def task_kept(task: TaskName) -> TaskName:
