@@ -68,5 +68,27 @@ class Offline(unittest.TestCase):
             agent.learn_from("set.npz", 1)
 
 
+class Printed(unittest.TestCase):
+    def test_reports_are_a_few_lines(self):
+        recording = recorded()
+        agent = learner()
+        lines = str(agent.learn_from(recording, 10)).splitlines()
+        self.assertRegex(lines[0], r"^10 gradient steps on \d+ rows")
+        self.assertNotIn("nan", "".join(lines))
+        report = agent.learn_from(recording, 10)
+        self.assertEqual((len(report.cost), len(report.multiplier), len(report.cost_names)), (1, 1, 1))
+        clone = redman.Agent(algo="ppo", obs_dim=1, action_dim=1, num_envs=1, cost_dim=1).clone(recording, epochs=3)
+        lines = str(clone).splitlines()
+        self.assertRegex(lines[0], r"^3 epochs on \d+ rows, \d+ held back for validation; the weights of epoch \d were kept$")
+        self.assertRegex(lines[1], "^mean squared error of an entry of the action: .*, of the rows held back ")
+
+    def test_a_memory_that_is_too_small_is_told_its_size(self):
+        recording = recorded()
+        with self.assertRaisesRegex(redman.RangeError, r"options=\{'replay_rows': (\d+)\}") as said:
+            learner(replay_rows=30).learn_from(recording, 1)
+        rows = int(str(said.exception).split("'replay_rows': ")[1].split("}")[0])
+        learner(replay_rows=rows).learn_from(recording, 1)
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -224,6 +224,14 @@ class Curves(unittest.TestCase):
         self.assertEqual(len(lines), 2)
 
 
+class Progress(unittest.TestCase):
+    def test_whole_epochs_and_rates_are_said_as_the_tool_says_them(self):
+        with contextlib.redirect_stderr(io.StringIO()) as said:
+            redman.train("bandit", steps=5000, envs=64, horizon=32, threads=0)
+        self.assertIn("steps=5000: a run ends after a whole epoch of up to 2048 steps, so it takes up to 6144 steps\n", said.getvalue())
+        self.assertRegex(said.getvalue(), r"100%  6\.14k steps  .*  \d[\d.]*[kM]? steps/s  0:00 left")
+
+
 class Algorithms(unittest.TestCase):
     def test_each_trains(self):
         for algo in redman.algos():
@@ -275,6 +283,17 @@ class Evaluations(unittest.TestCase):
             for key in ("return_mean", "return_std", "cost_mean", "cost_std", "length_mean", "success_rate",
                         "fall_rate", "violation_rate", "feasible"):
                 np.testing.assert_allclose(getattr(ours, key), said[key], rtol=1e-12, err_msg=key)
+
+    @unittest.skipUnless(TOOL, "the command-line tool was not built")
+    def test_it_is_printed_as_the_tool_prints_it(self):
+        for kind, episodes in (("random", 8), ("trained", 4), ("zero", 1)):
+            words = map(str, ("eval", "--task", "hand_over_safe_finger", "--policy", kind, "--episodes", episodes))
+            said = subprocess.run([TOOL, *words], check=True, capture_output=True, text=True).stdout.splitlines()
+            lines = str(redman.evaluate(kind, "hand_over_safe_finger", episodes=episodes)).splitlines()
+            self.assertEqual(lines[:2], said[:2])
+            self.assertIn("effort ", lines[2])
+            self.assertRegex(lines[3], "^length .* control steps, falls ")
+            self.assertLess(max(map(len, lines)), 250)
 
     def test_a_function_of_rows_plays(self):
         e = redman.evaluate(lambda obs: np.full((len(obs), 1), 0.5), "bandit", episodes=10)

@@ -12,6 +12,12 @@ if TYPE_CHECKING:
     from ._run import Run
 
 
+def _short(value: float) -> str:
+    """As the command writes counts: 38.1k, 2.5M."""
+    size, unit = (1e6, "M") if value >= 1e6 else (1e3, "k") if value >= 1e3 else (1, "")
+    return f"{value / size:.3g}{unit}"
+
+
 class Meter:
     """The line of one run. done: steps that the run had before."""
 
@@ -21,8 +27,8 @@ class Meter:
         self._live = sys.stderr.isatty() or "ipykernel" in sys.modules
         left = max(0, goal - done)
         if left % per_epoch:
-            self._say(f"steps={goal}: a run ends with an epoch, of up to {per_epoch} steps: it makes up to "
-                      f"{done + math.ceil(left / per_epoch) * per_epoch}\n")
+            self._say(f"steps={goal}: a run ends after a whole epoch of up to {per_epoch} steps, so it takes up to "
+                      f"{done + math.ceil(left / per_epoch) * per_epoch} steps\n")
 
     def show(self, e: Epoch) -> None:
         now = time.monotonic()
@@ -34,7 +40,7 @@ class Meter:
         left = int(max(self._goal - e.env_steps, 0) / max(rate, 1e-9))
         ended = (f"return {e.ret:.2f}  cost {e.cost[0]:.2f}  length {e.length:.0f}  falls {100 * e.fall_rate:.0f}%"
                  if e.episodes > 0 else f"no episode has ended  cost per step {e.cost_per_step:.3g}")
-        line = (f"{min(100, 100 * e.env_steps / self._goal):3.0f}%  {e.env_steps} steps  {ended}  {rate:.0f} steps/s  "
+        line = (f"{min(100, 100 * e.env_steps / self._goal):3.0f}%  {_short(e.env_steps)} steps  {ended}  {_short(rate)} steps/s  "
                 f"{left // 60}:{left % 60:02d} left")
         self._say(f"\r{line:<{self._width}}" if self._live else f"{line}\n")
         self._width = len(line) if self._live else 0

@@ -18,7 +18,7 @@ from ._error import ArgumentError, NotFoundError
 from ._html import number, pair, share, table
 from ._library import all_cores, int32
 from ._limits import CostLimits, each_cost
-from ._names import folded, keywords, nearest, one_of
+from ._names import Hinted, folded, keywords, nearest, one_of
 from ._options import Options, as_dict
 from ._own_costs import Costs, Own, RowFunction
 from ._policy import Backup, Origin, Policy
@@ -62,6 +62,10 @@ def _stderr(values: Array) -> Any:
     return values.std(axis=0, ddof=1) / np.sqrt(len(values)) if len(values) > 1 else np.full(values.shape[1:], np.nan)
 
 
+def _measured(mean: float, error: float) -> str:
+    return f"{mean:.3f}" if np.isnan(error) else f"{mean:.3f} +- {error:.2g}"
+
+
 # What Evaluation.interval knows: rows of an evaluation, and what is made of such as were drawn from them.
 _STATISTICS: dict[str, tuple[Callable[[Evaluation], Array], Callable[[Array], Array]]] = {
     "return_mean": (lambda e: e._sound(e.returns), _mean), "return_iqm": (lambda e: e._sound(e.returns), stats.iqm_of),
@@ -72,11 +76,16 @@ _QUANTILES = (0.5, 0.9, 0.99)
 
 
 @dataclass(frozen=True)
-class Evaluation:
+class Evaluation(Hinted):
     """Means over whole episodes; costs have a number for each column.
 
     An episode that diverged, got a bad action or whose task failed counts as a violation and not as a success. Its sums are
     no valid measurement: all other numbers are over the remaining episodes, NaN where there are none."""
+
+    _hints = {"cost": "cost_mean, the mean of each cost; costs, those of each episode", "ret": "return_mean; returns, those of each episode",
+              "return_": "return_mean; returns, those of each episode", "reward": "return_mean, the mean sum of rewards of an episode",
+              "success": "success_rate; successes, those of each episode", "length": "length_mean; lengths, those of each episode",
+              "limits": "cost_limits"}
 
     episodes: int
     return_mean: float
@@ -170,6 +179,28 @@ class Evaluation:
             ends = np.full((2, *rows.shape[1:]), np.nan)
         pairs = [(float(low), float(high)) for low, high in ends.reshape(2, -1).T]
         return pairs if rows.ndim > 1 else pairs[0]
+
+    def __str__(self) -> str:
+        """A few lines, of which the first two are those of `redman eval`."""
+        names = [*self.cost_names, *(f"cost {k}" for k in range(len(self.cost_names), len(self.cost_mean)))]
+        costs = [f"{name} {_measured(mean, error)}" + ("" if limit is None else f" (limit {limit:g})")
+                 for name, mean, error, limit in zip(names, self.cost_mean, self.cost_stderr, self.cost_limits)]
+        shown = [k for k, limit in enumerate(self.cost_limits) if k == 0 or limit is not None]
+        others = [cost for k, cost in enumerate(costs) if k not in shown]
+        first = ", ".join([f"return {_measured(self.return_mean, self.return_stderr)}", *(costs[k] for k in shown),
+                           f"success {100 * self.success_rate:.1f}%", f"over a limit {100 * self.violation_rate:.1f}%",
+                           *(f"CVaR of the cost {cvar:.3f}" for cvar in self.cost_cvar[:1])])
+        lines = [f"{self.episodes} episode{'s' * (self.episodes != 1)}: {first}",
+                 "+- is a standard error, CVaR the mean of the worst tenth of the episodes"]
+        if others:
+            lines.append(f"other costs: {', '.join(others)}")
+        lines.append(f"length {self.length_mean:.1f} control steps, falls {100 * self.fall_rate:.1f}%, violating steps {self.violating_steps}")
+        if self.decisions is not None:
+            lines.append(f"the shield changed {self.interventions} of {self.decisions} decisions")
+        wrong = {name: getattr(self, name) for name in (*_END_FLAGS, *_STEP_FLAGS)}
+        if any(wrong.values()):
+            lines.append("went wrong: " + ", ".join(f"{name} {count}" for name, count in wrong.items() if count))
+        return "\n".join(lines)
 
     def _repr_html_(self) -> str:
         """A table with intervals, for a notebook."""

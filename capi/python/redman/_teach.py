@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import ctypes
 from ctypes import byref
-from typing import Any, Callable, Optional
+from typing import Any, Callable, Optional, Sequence
 
 import numpy as np
 
 from . import _abi
+from ._error import RangeError
 from ._library import assign, check, flag, instance, lib, real, sized, whole
 from ._policy import Backup, policy_of
 from ._recording import Recording
@@ -33,6 +34,37 @@ class CloneReport(_abi.CloneReport):
             stopped=bool(struct.stopped), validation_loss=struct.validation_loss if held else float("nan"),
             train_losses=tuple(train[:struct.epochs].tolist()),
             validation_losses=tuple(validation[:struct.epochs].tolist()) if held else ())
+
+    def __str__(self) -> str:
+        """Two lines for people."""
+        held = f", {self.validation_rows} held back for validation" if self.validation_rows else ""
+        tested = f", of the rows held back {self.validation_loss:.4g}" if self.validation_rows else ""
+        return (f"{self.epochs} epochs{' (stopped early)' if self.stopped else ''} on {self.train_rows} rows{held}; the weights of epoch "
+                f"{self.best_epoch} were kept\nmean squared error of an entry of the action: {self.train_loss:.4g}{tested}")
+
+
+class LearnReport(_abi.LearnReport):
+    """What Agent.learn_from did. steps: gradient steps of this call; rows: count that are learned from; skipped_gradients:
+    steps left out for a gradient that was not finite; loss_policy, loss_reward_value, loss_cost_value, value_reward,
+    value_cost: means over the steps, nan where there is none; cost, multiplier: of each cost, its sum over an episode of the
+    policy as the critics estimate it, nan without a limit, and its multiplier; cost_names: their names."""
+
+    cost_names: tuple[str, ...]
+
+    def __init__(self, struct: _abi.rdm_learn_report, names: Sequence[str]) -> None:
+        super().__init__(struct)
+        n = len(names)
+        self.__dict__.update(cost=self.cost[:n], multiplier=self.multiplier[:n], cost_names=tuple(names))
+
+    def __str__(self) -> str:
+        """A few lines for people."""
+        losses = {"policy": self.loss_policy, "critic of the reward": self.loss_reward_value, "critic of the costs": self.loss_cost_value}
+        means = [f"{name} {loss:.4g}" for name, loss in losses.items() if not np.isnan(loss)]
+        costs = [f"{name} {cost:.4g} (multiplier {multiplier:.4g})"
+                 for name, cost, multiplier in zip(self.cost_names, self.cost, self.multiplier) if not np.isnan(cost)]
+        skipped = f", {self.skipped_gradients} skipped, as their gradient was not finite" if self.skipped_gradients else ""
+        return "\n".join([f"{self.steps} gradient steps on {self.rows} rows{skipped}", *([f"mean losses: {', '.join(means)}"] if means else []),
+                          *([f"sum over an episode, as the critics estimate it: {', '.join(costs)}"] if costs else [])])
 
 
 class Taught:
@@ -74,7 +106,7 @@ class Taught:
             self._run(lib.rdm_agent_clone, recording._handle.value, byref(how), byref(report))
         return CloneReport(report, *losses)
 
-    def learn_from(self, recording: Recording, steps: int) -> _abi.LearnReport:
+    def learn_from(self, recording: Recording, steps: int) -> LearnReport:
         """Learns from a recording alone, without a world: `steps` gradient steps of an algorithm with a replay memory, such as
         td3_bc_lag; 0 only fills its memory. Option replay_rows must hold the rows, and the longest episode once more for each
         environment. A row of the recording is one decision of the agent (action_repeat). The first call fills the memory and
@@ -84,8 +116,19 @@ class Taught:
         steps = whole(steps, "steps", -(1 << 63), (1 << 63) - 1)
         report = sized(_abi.rdm_learn_report)
         with self._lock, recording._lock:
-            self._run(lib.rdm_agent_learn, recording._handle.value, steps, byref(report))
-        return _abi.LearnReport(report)
+            try:
+                self._run(lib.rdm_agent_learn, recording._handle.value, steps, byref(report))
+            except RangeError as error:
+                if not str(error).startswith("replay_rows"):
+                    raise
+                raise RangeError(f"learn_from: the replay memory is too small for the recording: make the agent with "
+                                 f"options={{'replay_rows': {self._most_rows(recording)}}} ({error})") from None
+        return LearnReport(report, self._config["cost_names"])
+
+    def _most_rows(self, recording: Recording) -> int:
+        """Rows that a replay memory needs for a recording: its own, and for each of several environments its longest episode."""
+        longest = int(np.unique(recording.episode, return_counts=True)[1].max(initial=0))
+        return recording.info.rows + (longest * self.num_envs if self.num_envs > 1 else 0)
 
     @property
     def recording(self) -> Optional[Recording]:
