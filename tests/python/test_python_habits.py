@@ -1,6 +1,8 @@
 """What a user of other libraries writes first works here, or the error says what to write: a list of such lines."""
 import importlib.util
 import os
+import subprocess
+import sys
 import tempfile
 import unittest
 
@@ -46,6 +48,12 @@ def unpacked(pool, count):
             else:
                 return
         raise said
+
+
+class Install(unittest.TestCase):
+    def test_without_numpy_the_error_says_how_to_get_it(self):
+        said = subprocess.run([sys.executable, "-c", "import sys; sys.modules['numpy'] = None; import redman"], capture_output=True, text=True)
+        self.assertEqual(said.stderr.splitlines()[-1], "ImportError: redman needs numpy: apt-get install python3-numpy, or pip install numpy")
 
 
 class Ids(unittest.TestCase):
@@ -117,6 +125,15 @@ HABITS = (
     ("its short name", lambda w: w.short(lr=1e-3), WORKS),
     ("a rate twice", lambda w: w.short(lr=1e-3, options={"learning_rate": 1e-3}), "given twice"),
     ("widths of layers", lambda w: w.short(hidden=[16, 16]), WORKS),
+    ("a learning rate, misspelt", lambda w: w.short(learning_rat=1e-3), "nearest is learning_rate"),
+    ("the cost of an evaluation", lambda w: redman.evaluate("zero", TASK, episodes=1).cost, "cost_mean"),
+    ("a field that is none", lambda w: w.pool.fields["speed"], "field speed: ball_run has none"),
+    ("a cost that is none", lambda w: w.pool.costs["sped"], "nearest is speed"),
+    ("a field of rows", lambda w: redman.Rows(w.pool).velocity, r"rows\.field\('velocity'\)"),
+    ("a picture in a file", lambda w: w.pool.render("x.png"), r"episode\.render\(path\)"),
+    ("make of the module of environments", lambda w: redman.gym.make(TASK), r"redman\.make\(task\)"),
+    ("one action for all worlds", lambda w: w.pool.step(np.zeros(2)), WORKS),
+    ("one number for all actions", lambda w: w.pool.step(0.5), WORKS),
     ("an id to train on", lambda w: w.short("redman/BallRun-v0"), WORKS),
     ("several seeds", lambda w: w.short(seed=[0, 1])[1].policy, WORKS),
     ("a run of a folder", lambda w: redman.Run.load(w.folder).curve, WORKS),

@@ -86,19 +86,24 @@ class Learned(unittest.TestCase):
         run = redman.train(TASK, **SMALL, costs={"fast": fast, "own": "cost"}, cost_limits={"own": 25})
         self.assertEqual(run.cost_limits, {"fast": None, "own": 25})
         self.assertLessEqual({"Metrics/EpCost", "Metrics/EpCost/own", "Metrics/LagrangeMultiplier/own"}, set(run.curve))
-        by_list = redman.train(TASK, **SMALL, costs=[fast], cost_limits=25)
-        self.assertEqual(by_list.cost_limits, {"fast": 25})
+        for costs in ([fast], fast):  # by their own names
+            self.assertEqual(redman.train(TASK, **SMALL, costs=costs, cost_limits=25).cost_limits, {"fast": 25})
+            self.assertEqual(redman.evaluate("zero", TASK, episodes=1, costs=costs).cost_names, ("fast",))
 
     def test_what_is_wrong_is_said(self):
         for wrong, words in (
-                ({"costs": {}}, "give at least one cost"), ({"costs": fast}, "a dict of functions by name"),
-                ({"costs": [lambda r: 0]}, "needs a name"),
+                ({"costs": {}}, "give at least one cost"), ({"costs": "fast"}, "a dict of functions by name"),
+                ({"costs": [lambda r: r.n]}, "needs a name"), ({"costs": lambda r: r.n}, "needs a name"),
                 ({"costs": {"a=b": fast}}, "is not a name"), ({"costs": {"fast": 3}}, "a function of redman.Rows"),
                 ({"costs": {"fast": "sped"}}, "has no cost sped; nearest is speed"),
                 ({"costs": {"fast": fast}, "cost_limits": {"fats": 3}}, "nearest is fast"),
-                ({"costs": {"fast": fast}}, "limit"),  # ppo_lag needs one
+                ({"costs": {"fast": fast}}, r"give cost_limits=\{'fast': \.\.\.\}, or algo='ppo'"),
+                ({"costs": {"fast": lambda: 1}}, r"costs\['fast'\]: it is called with one argument, a redman\.Rows"),
+                ({"reward": lambda: 1}, "reward: it is called with one argument"),
+                ({"costs": {"fast": lambda r: True}, "cost_limits": 3}, r"costs\['fast'\]: .*one number for each of 16 worlds"),
+                ({"reward": lambda r: 2.0}, "reward: .*one number for each of 16 worlds"),
                 ({"reward": 3}, "reward: it must be a function"), ({"costs": {"fast": fast}, "cost_limits": 3, "shield": True}, "shield"),
-                ({"costs": {"fast": lambda r: -r.n}, "cost_limits": 3}, "it returned -16, but a cost must not be below 0"),
+                ({"costs": {"fast": lambda r: np.full(r.n, -16)}, "cost_limits": 3}, "it returned -16, but a cost must not be below 0"),
                 ({"costs": {"fast": lambda r: r.obs}, "cost_limits": 3}, r"costs\['fast'\]: it returned float32 of shape \(16, 7\)"),
                 ({"reward": lambda r: r.obs[:, 0] * np.nan}, "reward: it returned nan in world 0"),
                 ({"reward": lambda r: r["velocoty"][:, 0]}, "nearest is velocity")):
@@ -119,7 +124,7 @@ class Judged(unittest.TestCase):
             return np.ones(rows.n)
 
         for task in (TASK, "hand_over_safe_finger"):
-            e = redman.evaluate("zero", task, episodes=5, costs={"steps": count}, reward=lambda rows: 2.0)
+            e = redman.evaluate("zero", task, episodes=5, costs={"steps": count}, reward=lambda rows: np.full(rows.n, 2.0))
             self.assertEqual(e.cost_mean, [e.length_mean])
             self.assertEqual(e.return_mean, 2 * e.length_mean)
             self.assertEqual((e.cost_names, e.violating_steps), (("steps",), int(5 * e.length_mean)))
@@ -151,7 +156,7 @@ class Judged(unittest.TestCase):
         def look(rows):
             said.update(raw=rows.obs[:, rows.pool.fields["velocity"].slice].copy(), si=rows.field("velocity").copy(),
                         speed=rows.speed("velocity"), costs=set(rows.costs), again=rows["velocity"].copy())
-            return 0.0
+            return np.zeros(rows.n)
 
         redman.evaluate("random", TASK, episodes=4, reward=look)
         field = redman.Pool(TASK).fields["velocity"]
@@ -177,7 +182,7 @@ class Elsewhere(unittest.TestCase):
         return (run.stdout if ok else run.stderr).strip()
 
     def test_a_folder_says_what_it_was_trained_on(self):
-        run = redman.train(TASK, **SMALL, costs={"fast": fast, "own": "cost", "odd": lambda rows: 0.0}, reward=gentle,
+        run = redman.train(TASK, **SMALL, costs={"fast": fast, "own": "cost", "odd": lambda rows: np.zeros(rows.n)}, reward=gentle,
                            cost_limits={"fast": 30}, out=self.folder)
         config = json.loads(Path(self.folder, "config.json").read_text())
         module = Path(__file__).stem

@@ -60,6 +60,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+try:
+    import numpy as _numpy
+except ImportError as error:
+    if error.name != "numpy":  # it is there, and something that it needs is not
+        raise
+    raise ImportError("redman needs numpy: apt-get install python3-numpy, or pip install numpy") from error
+
 from . import callbacks, stats
 from ._abi import (Autoreset, BaselineKind, Build, Feature, JointKind, MapInfo, OptionKind, OptionLevel, PlannerSpec, PolicyInfo,
                    PoolStats, PretrainReport, RayHit, RecordingInfo, ResultCode, RobotKind, Scale, ShapeKind, ShieldKind, ShieldStats,

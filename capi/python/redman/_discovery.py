@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any, Callable, Dict, Iterable, Iterator, Optio
 
 from . import _abi
 from ._abi import OptionKind, OptionLevel
-from ._error import UsageError
+from ._error import NotFoundError, UsageError
 from ._library import encoded, filled, check, lib, sized
+from ._names import nearest
 from ._options import Value, default_of, laid
 from ._paths import is_file, named
 from ._record import Record
@@ -77,16 +78,31 @@ class Joint(_abi.JointInfo):
     """A joint of a robot, or of a pool's worlds; kind is a redman.JointKind."""
 
 
-def fields_of(owner: int, count: int, call: Callable[..., int]) -> dict[str, Field]:
+class Named(Dict[str, R]):
+    """What a task, an algorithm or a pool has, by name. NotFoundError offers the nearest name."""
+
+    def __init__(self, rows: Iterable[R], what: str, owner: str) -> None:
+        super().__init__((getattr(row, "name", "") or getattr(row, "key"), row) for row in rows)
+        self._what, self._owner = what, owner
+
+    def unknown(self, name: object) -> NotFoundError:
+        return NotFoundError(f"{self._what} {name}: {self._owner} has none of that name{nearest(str(name), self)}")
+
+    def __missing__(self, name: object) -> R:
+        raise self.unknown(name)
+
+    def copy(self) -> Named[R]:
+        return Named(self.values(), self._what, self._owner)
+
+
+def fields_of(owner: int, name: str, count: int, call: Callable[..., int]) -> Named[Field]:
     """All fields of a task or a pool by name."""
-    return _records(Field, _abi.rdm_field_info, call, count, owner)
+    return Named(_records(Field, _abi.rdm_field_info, call, count, owner), "field", name)
 
 
-def _records(kind: type[R], struct: type[ctypes.Structure], call: Callable[..., int], count: int,
-             *before: Any) -> dict[str, R]:
-    """name -> record for all i that call(*before, i, &struct) knows."""
-    rows = (kind(filled(struct, call, *before, i)) for i in range(count))
-    return {getattr(row, "name", "") or getattr(row, "key"): row for row in rows}
+def _records(kind: type[R], struct: type[ctypes.Structure], call: Callable[..., int], count: int, *before: Any) -> Iterator[R]:
+    """Records of all i that call(*before, i, &struct) knows."""
+    return (kind(filled(struct, call, *before, i)) for i in range(count))
 
 
 def all_of(kind: type[R], struct: type[ctypes.Structure], call: Callable[..., int], *before: Any) -> list[R]:
@@ -124,10 +140,12 @@ class TaskInfo(_abi.Task):
         super().__init__(filled(_abi.rdm_task, lib.rdm_task_at, index))
         said = self.__dict__
         said["number"] = index
-        said["fields"] = fields_of(index, self.num_fields, lib.rdm_task_field_at)
-        said["costs"] = _records(Cost, _abi.rdm_cost_info, lib.rdm_task_cost_at, self.cost_dim, index)
-        said["options"] = _records(Option, _abi.rdm_option_spec, lib.rdm_task_option_at, self.num_options, index)
-        said["cameras"] = _records(Camera, _abi.rdm_camera_info, lib.rdm_task_camera_at, self.num_cameras, index)
+        said["fields"] = fields_of(index, self.name, self.num_fields, lib.rdm_task_field_at)
+        for what, kind, struct, call, count in (
+                ("cost", Cost, _abi.rdm_cost_info, lib.rdm_task_cost_at, self.cost_dim),
+                ("option", Option, _abi.rdm_option_spec, lib.rdm_task_option_at, self.num_options),
+                ("camera", Camera, _abi.rdm_camera_info, lib.rdm_task_camera_at, self.num_cameras)):
+            said[f"{what}s"] = Named(_records(kind, struct, call, count, index), what, self.name)
         said["defaults"] = laid(
             filled(_abi.rdm_option, lib.rdm_task_default_at, index, i) for i in range(self.num_defaults))
 
@@ -146,8 +164,8 @@ class Algo(_abi.Algo):
 
     def __init__(self, index: int) -> None:
         super().__init__(filled(_abi.rdm_algo, lib.rdm_algo_at, index))
-        self.__dict__["options"] = _records(
-            Option, _abi.rdm_option_spec, lib.rdm_algo_option_at, self.num_options, index)
+        self.__dict__["options"] = Named(
+            _records(Option, _abi.rdm_option_spec, lib.rdm_algo_option_at, self.num_options, index), "option", self.name)
 
     def __repr__(self) -> str:
         return f"<Algo {self.name}: {self.summary}>"

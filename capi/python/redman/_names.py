@@ -83,7 +83,7 @@ def _known(function: Callable[..., Any], placed: list[str], given: dict[str, Any
             out["options"] = {**laid, **out.get("options", {}), option: value}
             continue
         if own not in known:
-            raise UsageError(f"{name}({key}=...): {_advice(key, known, hints)}")
+            raise UsageError(f"{name}({key}=...): {_advice(key, known | _every_option() if options else known, hints)}")
         if own == "options" and own in out:  # laid already
             continue
         if own in out or own in placed:
@@ -98,14 +98,16 @@ def _advice(key: str, known: frozenset[str], hints: Mapping[str, str]) -> str:
 
 def _option(key: str) -> str:
     """The option of a task or an algorithm that a word stands for; "" for none."""
+    every = _every_option()
+    return next((word for word in (key, WORDS.get(key, "")) if word in every), "")
+
+
+def _every_option() -> set[str]:
+    """All options of tasks, algorithms, shields and planners."""
     from . import _discovery
     every = {name for algo in _discovery.algos().values() for name in algo.options}
     every |= {*_discovery.shield_options(), *_discovery.planner_options()}
-    every |= {name for task in _discovery.tasks().values() for name in task.options}
-    for word in (key, WORDS.get(key, "")):
-        if word in every:
-            return word
-    return ""
+    return every | {name for task in _discovery.tasks().values() for name in task.options}
 
 
 class Hinted:

@@ -1,6 +1,7 @@
 """Rewards and costs of your own: functions of rows of all worlds, which replace those of a task in train and evaluate."""
 from __future__ import annotations
 
+import inspect
 import math
 from typing import TYPE_CHECKING, Any, Callable, Mapping, Optional, Sequence, Union
 
@@ -90,7 +91,7 @@ class Rows(Hinted):
         lists all."""
         fields = self.pool._fields
         if not isinstance(name, str) or name not in fields:
-            raise NotFoundError(f"field {name}: {self.pool.task.name} has none of that name{nearest(str(name), fields)}")
+            raise fields.unknown(name)
         scale = fields[name].scale
         if math.isnan(scale):
             raise ArgumentError(f"field {name}: its entries have different units ({fields[name].unit}): take "
@@ -105,14 +106,19 @@ class Rows(Hinted):
 
     __getitem__ = field
 
+    def _no_attribute(self, name: str) -> AttributeError:
+        if name in self.pool._fields:
+            return AttributeError(f"Rows.{name}: it is a field of the observation: rows.field({name!r})")
+        return super()._no_attribute(name)
+
     def __repr__(self) -> str:
         return f"<Rows of {self.n} worlds of {self.pool.task.name}>"
 
 
 RowFunction = Callable[[Rows], Any]
 # Costs by name: a function of Rows that returns [n], a flag or a number not below 0; or the name of a cost of the task, which
-# stays. A list of functions has the names of these.
-Costs = Union[Mapping[str, Union[RowFunction, str]], Sequence[RowFunction]]
+# stays. A function, or a list of them, goes by its own name.
+Costs = Union[Mapping[str, Union[RowFunction, str]], Sequence[RowFunction], RowFunction]
 
 
 class Own:
@@ -122,6 +128,8 @@ class Own:
         self.where = where  # whose they are, where they were read
         if reward is not None and not callable(reward) and not isinstance(reward, str):
             raise UsageError(f"reward: it must be a function of redman.Rows, not {reward!r}")
+        if callable(reward):
+            _need_one_argument("reward", reward)
         self.reward = reward
         self.costs = None if costs is None else _by_name(costs)
         self._paths: dict[str, Optional[str]] = {}  # of functions that were not imported yet, by what they are
@@ -277,13 +285,13 @@ def _later(rows: Rows) -> Any:
 
 
 def _by_name(costs: Costs) -> dict[str, Union[RowFunction, str]]:
-    listed: Any = costs
-    if callable(listed) or isinstance(listed, str) or not hasattr(listed, "__iter__"):
+    listed: Any = [costs] if callable(costs) else costs
+    if isinstance(listed, str) or not hasattr(listed, "__iter__"):
         raise UsageError(f"costs: it must be a dict of functions by name, such as costs={{\"fast\": function}}, not {costs!r}")
     if not isinstance(listed, Mapping):
         named = [getattr(cost, "__name__", "<") for cost in listed]
         if any("<" in name for name in named):
-            raise UsageError("costs: every function of a list needs a name: give the others in a dict, costs={\"fast\": function}")
+            raise UsageError("costs: a function that is not in a dict needs a name of its own: give costs={\"fast\": function}")
         listed = dict(zip(named, listed))
     if not listed:
         raise UsageError("costs: give at least one cost; algo=\"ppo\" learns without costs")
@@ -292,13 +300,24 @@ def _by_name(costs: Costs) -> dict[str, Union[RowFunction, str]]:
             raise UsageError(f"costs: {name!r} is not a name: use letters, digits and _")
         if not callable(cost) and not isinstance(cost, str):
             raise UsageError(f"costs[{name!r}]: it must be a function of redman.Rows or the name of a cost of the task, not {cost!r}")
+        if callable(cost):
+            _need_one_argument(f"costs[{name!r}]", cost)
     return dict(listed)
+
+
+def _need_one_argument(what: str, function: RowFunction) -> None:
+    try:
+        inspect.signature(function).bind(None)
+    except TypeError:
+        raise UsageError(f"{what}: it is called with one argument, a redman.Rows") from None
+    except ValueError:  # of a function in C
+        pass
 
 
 def _values(what: str, function: Any, rows: Rows, lost: Array) -> FloatArray:
     """[n] the result of a function; 0 where a world diverged and the result is not finite."""
     given = np.asarray(function(rows))
-    if given.shape not in ((), (rows.n,)) or given.dtype.kind not in "biuf":
+    if given.shape not in ((rows.n,), () if rows.n == 1 else (rows.n,)) or given.dtype.kind not in "biuf":
         raise ArgumentError(f"{what}: it returned {given.dtype} of shape {given.shape}, but must return one number for each of {rows.n} worlds: "
                             f"({rows.n},)")
     out = np.empty(rows.n, np.float32)

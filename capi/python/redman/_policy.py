@@ -383,7 +383,7 @@ class Policy(Hinted):
     @property
     def fields(self) -> dict[str, _discovery.Field]:
         """What each entry of an observation means, by name; empty where the file does not say."""
-        return _discovery.fields_of(self._open(), self.info.num_fields, lib.rdm_policy_field_at)
+        return _discovery.fields_of(self._open(), "the policy", self.info.num_fields, lib.rdm_policy_field_at)
 
     @property
     def tensors(self) -> Tensors:

@@ -4,6 +4,7 @@ from __future__ import annotations
 import ctypes
 import math
 import operator
+import os
 import threading
 from ctypes import byref, c_size_t, c_uint64
 from functools import cached_property
@@ -370,7 +371,8 @@ class Pool(Hinted):
         """One step of every world (or of those where mask is true), of as many control steps as option action_repeat says;
         returns obs.
 
-        action is written to pool.action first; None uses what is there. To play a policy, use policy.actor(pool), which
+        action is written to pool.action first; None uses what is there. A single row [action_dim] is for all worlds, and a number
+        for all entries. To play a policy, use policy.actor(pool), which
         holds its actions: pool.step(actor()).
         """
         if action is not None and action is not self._action:
@@ -436,12 +438,12 @@ class Pool(Hinted):
     @property
     def cameras(self) -> dict[str, _discovery.Camera]:
         """All cameras of this pool: the task's, those on its robots, and those for clouds."""
-        return dict(self._cameras)
+        return self._cameras.copy()
 
     @cached_property
-    def _cameras(self) -> dict[str, _discovery.Camera]:
-        return {camera.name: camera for camera in _discovery.all_of(
-            _discovery.Camera, _abi.rdm_camera_info, lib.rdm_pool_camera_at, self._open())}
+    def _cameras(self) -> _discovery.Named[_discovery.Camera]:
+        return _discovery.Named(_discovery.all_of(_discovery.Camera, _abi.rdm_camera_info, lib.rdm_pool_camera_at, self._open()),
+                                "camera", self.task.name)
 
     def render(self, env: int = 0, camera: Optional[str] = None, width: int = 320, height: int = 240,
                what: str = "rgb", *, num_envs: int = 1, look: str = "fine") -> Array:
@@ -451,6 +453,9 @@ class Pool(Hinted):
 
         num_envs: worlds side by side in one scene, from env on, with the camera moved back until all are in sight; shape i of
         world env + k is k * len(shapes) + i. look: "fine", for people, or "plain", as observations look, in half the time."""
+        if isinstance(env, (str, os.PathLike)):
+            raise UsageError(f"render(env={env!r}): env is the number of a world, and the picture is returned as an array. To write a "
+                             "file: with pool.record() as episode: ..., then episode.render(path)")
         if camera is None:
             camera = next(iter(self.task.cameras), "")
         dtype, tail = one_of(what, _PICTURE, "what")
@@ -633,11 +638,11 @@ class Pool(Hinted):
     @property
     def fields(self) -> dict[str, _discovery.Field]:
         """What each entry of obs means, with this pool's options."""
-        return dict(self._fields)
+        return self._fields.copy()
 
     @cached_property
-    def _fields(self) -> dict[str, _discovery.Field]:
-        return _discovery.fields_of(self._open(), self.spec.num_fields, lib.rdm_pool_field_at)
+    def _fields(self) -> _discovery.Named[_discovery.Field]:
+        return _discovery.fields_of(self._open(), self.task.name, self.spec.num_fields, lib.rdm_pool_field_at)
 
     @property
     def bounds(self) -> tuple[FloatArray, FloatArray]:
@@ -660,7 +665,7 @@ class Pool(Hinted):
     @property
     def costs(self) -> dict[str, _discovery.Cost]:
         """What each column of cost means."""
-        return dict(self.task.costs)
+        return self.task.costs.copy()
 
     @property
     def single_observation_space(self) -> Any:

@@ -25,7 +25,7 @@ Without Gymnasium the two classes have the same methods over spaces of their own
 from __future__ import annotations
 
 import copy
-from typing import Any, Mapping, Optional, Union
+from typing import TYPE_CHECKING, Any, Mapping, Optional, Union
 
 import numpy as np
 
@@ -33,6 +33,7 @@ from ._defaults import Defaults, defaults
 from ._discovery import tasks
 from ._error import ArgumentError
 from ._library import whole
+from ._names import nearest
 from ._policy import Backup
 from ._pool import Pool
 from ._rows import Array
@@ -418,6 +419,14 @@ def _vector_entry(task: str) -> Any:
         return VectorEnv(task, num_envs, max_episode_steps=max_episode_steps,
                          **{k: v for k, v in kwargs.items() if k != "task"})
     return make
+
+
+if not TYPE_CHECKING:
+
+    def __getattr__(name: str) -> Any:
+        """For names of Gymnasium, the error says what to write instead."""
+        said = {"make": "redman.make(task)", "make_vec": "redman.make_vec(task, num_envs)", "VecEnv": "redman.gym.VectorEnv"}.get(name)
+        raise AttributeError(f"redman.gym.{name}: {said or 'there is no such name' + nearest(name, __all__)}")
 
 
 if gymnasium is not None:
