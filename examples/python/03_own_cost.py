@@ -23,7 +23,7 @@ held = redman.train("ball_run", "ppo_lag", steps=steps, envs=16, seed=1, horizon
                     cost_limits=LIMIT)
 for run in (free, held):
     e = run.evaluate(episodes=20)
-    print(f"{run.algo:7}: return {e.return_mean:6.1f}, steps above {TOP_SPEED} m/s: {e.cost_mean[0]:5.1f} of {LIMIT}")
+    print(f"{run.algo:7}: return {e.return_mean:6.1f}, steps above {TOP_SPEED} m/s: {e.cost_mean[0]:5.1f} (limit {LIMIT})")
 
 e = redman.evaluate("trained", "ball_run", episodes=20, costs=[fast], cost_limits=LIMIT)     # the same for any other policy
 print(f"bundled: return {e.return_mean:6.1f}, steps above {TOP_SPEED} m/s: {e.cost_mean[0]:5.1f}; feasible: {e.feasible}")

@@ -71,7 +71,9 @@ class Hub(unittest.TestCase):
         other = self.run_.evaluate(episodes=5, seed=3)
         self.assertIn("5 episodes by its mean action", hub.card(self.run_, other))
         # a bundled policy has no run
-        self.assertIn("# bandit\n", hub.card(redman.Policy.trained("bandit")))
+        bundled = hub.card(redman.Policy.trained("bandit"))
+        self.assertIn("# bandit\n", bundled)
+        self.assertIn("and decides every control step.", bundled)
 
     @unittest.skipUnless(yaml, "no yaml (apt-get install python3-yaml)")
     def test_the_head_is_yaml(self):

@@ -61,7 +61,7 @@ def card(given: Shown, evaluation: Optional[Evaluation] = None, repository: str 
     return "\n".join([
         *_front_matter(name, algo, result), "", f"# {name}" + (f", {algo}" if algo else ""), "",
         f"A policy for the task `{name}` of redman: {_summary(name)}", "", *learned,
-        f"It reads {policy.info.obs_dim} numbers, gives {policy.info.action_dim}, and decides every {policy.info.action_repeat} control steps.",
+        f"It reads {policy.info.obs_dim} numbers, gives {policy.info.action_dim}, and decides every {_steps(policy.info.action_repeat)}.",
         "", "## Evaluation", "",
         f"{result.episodes} episodes by its mean action, with standard errors; redman {build().version}.", "",
         *_table(result), "",
@@ -70,6 +70,10 @@ def card(given: Shown, evaluation: Optional[Evaluation] = None, repository: str 
         "## Use", "", "```python", "import redman", "from redman import hub", "", f"policy = hub.pull({json.dumps(repository)})",
         "print(redman.evaluate(policy))", "```", "",
         "The file `policy.rdm` is all that `redman eval --policy policy.rdm --task " + name + "`, a C program and a browser need.", ""])
+
+
+def _steps(count: int) -> str:
+    return "control step" if count == 1 else f"{count} control steps"
 
 
 def _summary(name: str) -> str:
