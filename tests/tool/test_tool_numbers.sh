@@ -10,7 +10,7 @@ about() { awk -v x="$(json "$1")" -v y="$2" 'BEGIN { d = x - y; exit !(x != "nul
 
 # An evaluation: at a glance in its first line, and the same again in JSON. Ten episodes of an unlimited cost too.
 "$tool" eval --task point_goal1 --policy trained --episodes 10 --seed 3 > text 2> err || { cat err; exit 1; }
-grep -qE '^10 episodes: return [0-9.]+ \+- [0-9.]+, cost [0-9.]+ \+- [0-9.]+ \(limit 25\), success [0-9.]+%, over a limit [0-9.]+%, CVaR of the cost [0-9.]+$' text ||
+grep -qE '^10 episodes of point_goal1: return [0-9.]+ \+- [0-9.]+, cost [0-9.]+ \+- [0-9.]+ \(limit 25\), success [0-9.]+%, over a limit [0-9.]+%, CVaR of the cost [0-9.]+$' text ||
   say "the first line is: $(head -n 1 text)"
 grep -qE '^hazards +[0-9.]+ \+- .* - +-$' text || say "no row of a cost without a limit: $(cat text)"
 "$tool" eval --task point_goal1 --policy trained --episodes 10 --seed 3 --json > out

@@ -181,7 +181,7 @@ class Evaluation(Hinted):
         return pairs if rows.ndim > 1 else pairs[0]
 
     def __str__(self) -> str:
-        """A few lines, of which the first two are those of `redman eval`."""
+        """A few lines, of which the first two are those of `redman eval`, without the task."""
         names = [*self.cost_names, *(f"cost {k}" for k in range(len(self.cost_names), len(self.cost_mean)))]
         costs = [f"{name} {_measured(mean, error)}" + ("" if limit is None else f" (limit {limit:g})")
                  for name, mean, error, limit in zip(names, self.cost_mean, self.cost_stderr, self.cost_limits)]

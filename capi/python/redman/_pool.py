@@ -717,7 +717,8 @@ class Pool(Hinted):
     @property
     def options(self) -> Mapping[str, Value]:
         """All options of the task as this pool has them, to be read: changing an entry is an error, and dict(pool.options) is a
-        copy. Pool(task, options={...}) makes worlds with others."""
+        copy. Those of joints and links (joint.NAME.kp, link.NAME.mass) are there where they were set. Pool(task, options={...})
+        makes worlds with others."""
         return self._options
 
     @cached_property
