@@ -181,6 +181,11 @@ struct Guess {
         tips.push_back({p.row, norm(p.X.p) > 0, p.X.p});
         at = stop + 1;
       }
+      for (const int32_t e : ends)
+        if (std::none_of(tips.begin(), tips.end(),
+                         [&](const End& t) { return t.row == e || is_below(*out, e, t.row); }))
+          out->note(RDM_NOTE_DROPPED, 0, "link %s: its chain has none of the tips, so it is no finger",
+                    name(e));
     } else {
       for (const int32_t e : ends) tips.push_back({e, false, {}});
     }

@@ -112,8 +112,11 @@ TEST(Import, RolesAreGuessedAndListed) {
   const Import two = from_file("hand.urdf", &o);
   EXPECT_STREQ(two.def.name, "two");
   EXPECT_EQ(two.def.num_fingers, 2);
-  EXPECT_DOUBLE_EQ(two.def.mount.p[2], -0.01);
-  EXPECT_NEAR(two.def.mount.q[2], std::sqrt(0.5), 1e-12);
+  for (const char* link : {"middle_distal", "ring_distal"})
+    EXPECT_TRUE(two.has_note(RDM_NOTE_DROPPED, std::string("link ") + link +
+                                                   ": its chain has none of the tips, so it is no finger"));
+  EXPECT_FALSE(two.has_note(RDM_NOTE_DROPPED, "link thumb_distal"));
+  EXPECT_FALSE(i.has_note(RDM_NOTE_DROPPED, "so it is no finger"));
 }
 
 // An option that would change the robot is taken or refused, never passed over.
