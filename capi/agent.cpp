@@ -340,7 +340,7 @@ rdm_result rdm_agent_get_values(const rdm_agent* a, const float* obs, int32_t ro
 
 namespace rdm::capi {
 // All of rdm_epoch: without padding, so a member that Epoch lacks makes it larger.
-#define RDM_BYTES(type, member) +sizeof(rdm_epoch::member)
+#define RDM_BYTES(type, member) +sizeof(rdm_epoch::member)  // NOLINT(bugprone-macro-parentheses)
 static_assert(sizeof(rdm_epoch) == RDM_EPOCH_MEMBERS(RDM_BYTES) + sizeof(rdm_epoch::struct_size) +
                                        sizeof(rdm_epoch::reserved) + sizeof(rdm_epoch::reserved2) +
                                        sizeof(rdm_epoch::reserved3),

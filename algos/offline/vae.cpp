@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "algos/off_policy/replay.hpp"
 #include "base/elementary.hpp"
 #include "nn/kernels.hpp"
 #include "nn/squash.hpp"

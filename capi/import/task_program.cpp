@@ -249,7 +249,8 @@ rdm_result place_robots(const Program& p, rdm_world* world, State* s, rdm_random
       const double angle = draw(random, p.start[j]) + draw(random, p.noise[j]);
       q[j] = std::clamp(angle, p.lower[j], p.upper[j]);
     }
-    TRY(rdm_world_set_joints(world, player.robot, q + player.joint, nullptr, player.joints));
+    TRY(rdm_world_set_joints(world, player.robot, q + player.joint, nullptr,
+                             static_cast<size_t>(player.joints)));
     for (int32_t i = 0; i < player.joints; ++i)
       if (const double rest = p.rest[player.joint + i]; !std::isnan(rest))
         TRY(rdm_world_set_targets(world, player.joint + i, &rest, 1));
@@ -265,8 +266,8 @@ rdm_result place_robots(const Program& p, rdm_world* world, State* s, rdm_random
       TRY(rdm_world_set_base(world, player.robot, &m));
     }
     if (player.compensated) {
-      TRY(rdm_world_get_gravity(world, player.robot, q, player.joints));
-      TRY(rdm_world_set_feedforward(world, player.joint, q, player.joints));
+      TRY(rdm_world_get_gravity(world, player.robot, q, static_cast<size_t>(player.joints)));
+      TRY(rdm_world_set_feedforward(world, player.joint, q, static_cast<size_t>(player.joints)));
     }
   }
   return RDM_OK;
@@ -358,11 +359,11 @@ rdm_result program_control(void*, const void* instance, rdm_world* world, void* 
                                                         : std::clamp(command[k] + c.step * a, -1.0, 1.0);
     }
     if (player.control != Control::kNone)
-      TRY(rdm_world_set_commands(world, player.robot, command, player.commands));
+      TRY(rdm_world_set_commands(world, player.robot, command, static_cast<size_t>(player.commands)));
     if (player.compensated) {
       double efforts[kMostTaskJoints];
-      TRY(rdm_world_get_gravity(world, player.robot, efforts, player.joints));
-      TRY(rdm_world_set_feedforward(world, player.joint, efforts, player.joints));
+      TRY(rdm_world_get_gravity(world, player.robot, efforts, static_cast<size_t>(player.joints)));
+      TRY(rdm_world_set_feedforward(world, player.joint, efforts, static_cast<size_t>(player.joints)));
     }
     if (player.push_action >= 0) {
       double push[2][3];
