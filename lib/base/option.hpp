@@ -33,8 +33,7 @@ struct OptionSpec {
   bool levelled = false;  // option level says what is drawn of it, unless it is given
   bool open = false;      // what stands behind the last '.' of the key is any name
   bool chooses = false;   // what other rows the table has follows from it
-  bool if_given =
-      false;  // counts where it was given alone: what it stands for may have other values than the default
+  bool if_given = false;  // counts only where it was given: what it stands for may differ from the default
   OptionLevel level = OptionLevel::kAdvanced;
 };
 
@@ -170,8 +169,9 @@ class Options {
   // Current value as text ("0.5", "0.7..1.3", "egg") of kOptionTextSize bytes, which reads back exactly.
   // False for a text that is longer: it is cut.
   bool print(int32_t i, char* out) const;
-  // All values as lines for set_lines, but for those that count if given and were not, and where a level draws
-  // for those that it draws, into at most `capacity` bytes (none when it is less than all need); the length without terminator.
+  // All values as lines for set_lines, but for those that count only if given and were not, and where a level
+  // draws for those that it draws, into at most `capacity` bytes (none when it is less than all need); the
+  // length without terminator.
   size_t print_lines(char* out, size_t capacity) const;
   Vector<char> lines() const;  // these, with the terminator
   // Changes the default of one key (a task's or an algorithm's own default); bounds are checked.

@@ -271,12 +271,10 @@ namespace {
 void check_ending(const FileOfFlag& file) {
   const std::string ending = fs::path(file.path).extension().string();
   if (ending.empty() || file.endings.empty()) return;
-  std::string list;
-  for (const std::string& known : words_of(file.endings, " ")) {
-    if (same_name(ending, known)) return;
-    list += (list.empty() ? "" : " or ") + known;
-  }
-  throw Usage(file.flag + ' ' + file.path + ": its name does not end in " + list);
+  const std::vector<std::string> known = words_of(file.endings, " ");
+  for (const std::string& word : known)
+    if (same_name(ending, word)) return;
+  throw Usage(file.flag + ' ' + file.path + ": its name does not end in " + joined(known, " or "));
 }
 
 }  // namespace

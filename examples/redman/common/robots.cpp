@@ -8,6 +8,7 @@
 #include "common/names.hpp"
 #include "common/report.hpp"
 #include "common/task_files.hpp"
+#include "common/text.hpp"
 
 namespace tool {
 
@@ -17,9 +18,8 @@ namespace {
 int32_t place_of(const std::string& word, const std::vector<std::string>& words, const char* flag) {
   for (size_t i = 0; i < words.size(); ++i)
     if (same_name(word, words[i])) return static_cast<int32_t>(i);
-  std::string list;
-  for (const std::string& known : words) list += (list.empty() ? "" : ", ") + known;
-  throw Usage(std::string(flag) + ' ' + word + ": it is not one of " + list + nearest_hint(word, words));
+  throw Usage(std::string(flag) + ' ' + word + ": it is not one of " + joined(words, ", ") +
+              nearest_hint(word, words));
 }
 
 }  // namespace

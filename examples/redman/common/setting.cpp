@@ -9,20 +9,6 @@
 #include "common/text.hpp"
 
 namespace tool {
-namespace {
-
-// The lines leave out what option level draws, and the call gives texts of at most RDM_TEXT_SIZE: one of them has it.
-template <class Owner, class SettingAt>
-std::string setting(const Owner& owner, SettingAt setting_at, int32_t i, const std::string& key) {
-  const char* name = nullptr;
-  char text[RDM_TEXT_SIZE];
-  const rdm_result r = setting_at(owner.get(), i, &name, text);
-  if (r == RDM_ERROR_RANGE) return option_of(read_settings(owner.settings()), key);
-  redman::check(r);
-  return text;
-}
-
-}  // namespace
 
 Options read_settings(const std::string& lines) {
   Options out;
@@ -40,6 +26,7 @@ std::string option_of(const Options& options, const std::string& key) {
   return out;
 }
 
+// The lines leave out what option level draws, and the call gives texts of at most RDM_TEXT_SIZE: one of them has it.
 Options pool_settings(const redman::Pool& pool) {
   Options out;
   for (int32_t i = 0;; ++i) {
@@ -54,9 +41,15 @@ Options pool_settings(const redman::Pool& pool) {
 
 std::string agent_setting(const redman::Agent& agent, const std::string& algo, const std::string& wanted) {
   const std::vector<rdm_option_spec> table = algo_options(find_algo(algo));
-  for (size_t i = 0; i < table.size(); ++i)
-    if (same_name(table[i].key, wanted))
-      return setting(agent, rdm_agent_setting_at, static_cast<int32_t>(i), table[i].key);
+  for (size_t i = 0; i < table.size(); ++i) {
+    if (!same_name(table[i].key, wanted)) continue;
+    const char* key = nullptr;
+    char text[RDM_TEXT_SIZE];
+    const rdm_result r = rdm_agent_setting_at(agent.get(), static_cast<int32_t>(i), &key, text);
+    if (r == RDM_ERROR_RANGE) return option_of(read_settings(agent.settings()), key);
+    redman::check(r);
+    return text;
+  }
   throw Failure("algorithm " + algo + " has no option " + wanted);
 }
 

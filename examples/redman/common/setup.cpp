@@ -505,12 +505,9 @@ std::vector<double> cost_limits(const redman::Pool& pool, const std::vector<std:
       names.push_back(costs[i].name);
       if (same_name(name, costs[i].name)) column = i;
     }
-    if (column == costs.size()) {
-      std::string list;
-      for (const std::string& known : names) list += (list.empty() ? "" : ", ") + known;
-      throw Usage("--cost-limit " + text + ": there is no cost column " + name + ", but " + list +
-                  nearest_hint(name, names));
-    }
+    if (column == costs.size())
+      throw Usage("--cost-limit " + text + ": there is no cost column " + name + ", but " +
+                  joined(names, ", ") + nearest_hint(name, names));
     limits[column] = limit_number(value, text);
   }
   return limits;

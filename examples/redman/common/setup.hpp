@@ -78,7 +78,8 @@ void apply_sets(const std::vector<std::string>& sets, PoolSettings& pool, AgentS
 
 // Usage where texts of --set give an option that is a flag of the command, "--points" of points.
 void refuse_flags(const std::vector<std::string>& sets, std::initializer_list<const char*> keys);
-// Says which texts of --set do nothing, because the option that they belong to is off.
+// Says which texts of --set do nothing, because the option that they belong to is off, and which robots of --robot no option
+// names.
 void say_idle(const std::vector<std::string>& sets, const PoolSettings& pool,
               const AgentSettings* agent = nullptr);
 // Says so where more worlds were asked for than there are episodes, of which each is played in one.

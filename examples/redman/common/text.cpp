@@ -107,6 +107,12 @@ std::vector<std::string> words_of(const std::string& text, const std::string& be
   return out;
 }
 
+std::string joined(const std::vector<std::string>& words, const std::string& between) {
+  std::string out;
+  for (size_t i = 0; i < words.size(); ++i) out += (i ? between : "") + words[i];
+  return out;
+}
+
 std::string short_count(double value) {
   const double size = std::abs(value);
   if (size >= 1e6) return format("%.3gM", value / 1e6);

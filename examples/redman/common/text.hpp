@@ -26,6 +26,8 @@ std::vector<std::string> cells_of(const std::string& line, size_t most);
 
 // The words of a text with `between` between them: "a|b" has two.
 std::vector<std::string> words_of(const std::string& text, const std::string& between);
+// The other way round.
+std::string joined(const std::vector<std::string>& words, const std::string& between);
 
 // "1.2k", "3.5M": a count for progress lines and axes.
 std::string short_count(double value);
