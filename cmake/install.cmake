@@ -67,9 +67,16 @@ file(RELATIVE_PATH RDM_PC_PREFIX /prefix/${CMAKE_INSTALL_LIBDIR}/pkgconfig /pref
 # redman-static names the archive: beside the shared library, -lredman would not be it.
 # The engines are no Requires.private: pkg-config would want their files for --cflags, which the shared library does not.
 set(RDM_PC_LINKS "Libs: -L\${libdir} -lredman\nLibs.private:${RDM_PC_ENGINES}${RDM_PC_RUNTIME} -lm -pthread")
+set(RDM_PC_DEFINES "")
 configure_file(cmake/redman.pc.in redman.pc @ONLY)
-set(RDM_PC_LINKS "Requires: ${RDM_PC_REQUIRES}\nLibs: \${libdir}/libredman.a${RDM_PC_RUNTIME} -lm -pthread")
+set(RDM_PC_HIDES "")
+if(CMAKE_SYSTEM_NAME STREQUAL "Linux")
+  set(RDM_PC_HIDES " -Wl,--exclude-libs,libredman.a")  # as rdm_archive
+endif()
+set(RDM_PC_LINKS "Requires: ${RDM_PC_REQUIRES}\nLibs: \${libdir}/libredman.a${RDM_PC_HIDES}${RDM_PC_RUNTIME} -lm -pthread")
+set(RDM_PC_DEFINES " -DRDM_STATIC")
 configure_file(cmake/redman.pc.in redman-static.pc @ONLY)
+set(RDM_PC_DEFINES "")
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/redman.pc ${CMAKE_CURRENT_BINARY_DIR}/redman-static.pc
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT dev)
 if(TARGET redman_import)

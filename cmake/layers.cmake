@@ -213,6 +213,13 @@ function(rdm_export target)
   set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${map})
 endfunction()
 
+# rdm_archive(target): a plugin that links this static library exports none of its names.
+function(rdm_archive target)
+  get_target_property(name ${target} OUTPUT_NAME)
+  target_compile_definitions(${target} INTERFACE RDM_STATIC)
+  target_link_options(${target} INTERFACE $<$<PLATFORM_ID:Linux>:LINKER:--exclude-libs,lib${name}.a>)
+endfunction()
+
 # rdm_library(target STATIC|SHARED) from the objects of all layers.
 function(rdm_library target kind)
   add_library(${target} ${kind})
@@ -232,6 +239,7 @@ function(rdm_library target kind)
     rdm_export(${target} redman+redman_old:REDMAN_${RDM_ABI} redman_1.0:REDMAN_1.0:REDMAN_${RDM_ABI}
                redman_experimental:REDMAN_EXPERIMENTAL_${RDM_VERSION_MAJOR}_${RDM_VERSION_MINOR})
   else()
+    rdm_archive(${target})
     # a project without C++ links what the compiler of C++ would add
     if(NOT RDM_STANDALONE_ARCHIVE)
       target_link_libraries(${target} INTERFACE $<$<LINK_LANGUAGE:C>:$<IF:$<PLATFORM_ID:Darwin>,c++,stdc++>>)

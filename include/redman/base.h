@@ -6,7 +6,7 @@
 
 #if !defined(RDM_API)
 #if defined(RDM_STATIC)
-#define RDM_API /* the library is part of the program, which exports none of it */
+#define RDM_API /* users of redman::redman_static and redman-static.pc define it */
 #elif defined(_WIN32)
 #define RDM_API /* the library exports the names of its list; programs need no mark */
 #elif defined(__GNUC__)

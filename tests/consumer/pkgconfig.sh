@@ -13,7 +13,14 @@ LD_LIBRARY_PATH=$prefix/$libdir "$out/use_shared"
 # shellcheck disable=SC2046
 "$cc" -std=c99 "$source" -o "$out/use_static" $(pkg-config --cflags --libs redman-static)
 "$out/use_static"
-! ldd "$out/use_static" | grep -q libredman
+if ldd "$out/use_static" | grep libredman; then exit 1; fi
+if [ "$(uname)" = Linux ]; then  # a plugin exports none of the archive's names
+  # shellcheck disable=SC2046
+  "$cc" -std=c99 -shared -fPIC "$source" -o "$out/use_static.so" $(pkg-config --cflags --libs redman-static)
+  nm -D --defined-only "$out/use_static.so" > "$out/use_static.names"
+  grep -q ' main$' "$out/use_static.names"
+  if grep rdm_ "$out/use_static.names"; then exit 1; fi
+fi
 if pkg-config --exists redman_import; then
   # shellcheck disable=SC2046
   "$cc" -std=c99 "$(dirname "$0")/use_import.c" -o "$out/use_import" $(pkg-config --cflags --libs redman_import)
