@@ -36,7 +36,7 @@ part "evaluating"
 agent=$("$redman" eval --task "$task" --policy "$policy" --episodes 100 --seed 1000 --json)
 random=$("$redman" rollout --task "$task" --policy random --episodes 100 --seed 1000 --json)
 part "drawing"
-picture=$(text file "$("$redman" render --task "$task" --policy "$policy" --strip 6 --from 6 --to 36 --camera close --size 320x240 --out "$run/strip.png" --json)")
+picture=$(text file "$("$redman" render --task "$task" --policy "$policy" --strip 4 --from 8 --to 32 --camera close --size 480x360 --out "$run/strip.png" --json)")
 page="none: $("$redman" render --task "$task" --policy "$policy" --camera close --html "$run/episode.html" 2>&1 > /dev/null)" &&
   page=$run/episode.html
 part "done"

@@ -110,7 +110,7 @@ while read -r name policy task camera moments size from to sets; do
   "$redman" render --task "$task" --policy "$policy" --camera "$camera" --strip "$moments" --from "$from" --to "$to" --size "$size" $sets \
     --out "$out/$name.png" > /dev/null
 done <<'T'
-hand_over trained hand_over_safe_finger close 6 320x240 6 36
+hand_over trained hand_over_safe_finger close 4 480x360 8 32
 catch_underarm demo catch_underarm_safe_finger close 4 360x300 8 60 --seed 4
 grasp demo grasp close 4 360x300 0 73
 reorient demo reorient close 4 360x300 0 73
