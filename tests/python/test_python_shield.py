@@ -342,10 +342,22 @@ class Evaluations(unittest.TestCase):
         free, e = redman.evaluate("random", TASK, **said), redman.evaluate("random", TASK, shield=True, **said)
         self.assertEqual(free.violating_steps, free.costs[:, 0].sum())  # each is a cost of 1 of the one cost with a limit
         self.assertGreater(free.violating_steps, 0)
-        self.assertEqual((free.decisions, free.interventions), (None, None))
-        self.assertEqual((e.violating_steps, e.cost_mean[0]), (0, 0))
+        self.assertEqual((free.decisions, free.interventions, free.inevitable_steps), (None, None, None))
+        self.assertEqual((e.violating_steps, e.inevitable_steps, e.cost_mean[0]), (0, 0, 0))
         self.assertEqual(e.decisions, np.ceil(e.lengths / 4).sum())
         self.assertTrue(0 < e.interventions < e.decisions)
+
+    def test_steps_that_no_plan_avoids_are_counted(self):
+        said = {"episodes": 16, "shield": True}
+        e = redman.evaluate("hold", "reorient", action_repeat=3, **said)  # some episodes begin with the object outside the window
+        self.assertGreater(e.inevitable_steps, 0)
+        self.assertEqual(e.inevitable_steps, e.violating_steps)
+        self.assertIn(f"violating steps {e.violating_steps}, of which {e.inevitable_steps} were inevitable", str(e))
+        held = redman.evaluate("hold", "reorient", options={"action_repeat": 3}, **said)
+        self.assertEqual((held.violating_steps, held.inevitable_steps), (e.violating_steps, e.inevitable_steps))
+        free = redman.evaluate("random", TASK, episodes=12, action_repeat=4, shield={"budgets": FREE})  # within the budgets, so not inevitable
+        self.assertEqual(free.inevitable_steps, 0)
+        self.assertGreater(free.violating_steps, 0)
 
     def test_a_shield_that_has_nothing_to_do_changes_no_number(self):
         for player, more in (("trained", {}), ("trained", {"magnitudes": True}), ("random", {"action_repeat": 2})):

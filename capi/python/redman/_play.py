@@ -105,6 +105,7 @@ class Evaluation(Hinted):
     successes: npt.NDArray[np.bool_] = field(repr=False, compare=False)  # [episodes]
     decisions: Optional[int] = None  # that the shield looked at; None: there was none
     interventions: Optional[int] = None  # of these, that it did not let through
+    inevitable_steps: Optional[int] = None  # of violating_steps, those of unproven decisions; None: there was no shield
     diverged: int = 0  # episodes that ended as a value was not finite
     contacts_left_out: int = 0  # steps in which contacts beyond contacts_max were left out
     unconverged: int = 0  # steps in which contacts were not solved
@@ -194,7 +195,8 @@ class Evaluation(Hinted):
                  "+- is a standard error, CVaR the mean of the worst tenth of the episodes"]
         if others:
             lines.append(f"other costs: {', '.join(others)}")
-        lines.append(f"length {self.length_mean:.1f} control steps, falls {100 * self.fall_rate:.1f}%, violating steps {self.violating_steps}")
+        lines.append(f"length {self.length_mean:.1f} control steps, falls {100 * self.fall_rate:.1f}%, violating steps {self.violating_steps}"
+                     + (f", of which {self.inevitable_steps} were inevitable" if self.inevitable_steps else ""))
         if self.decisions is not None:
             lines.append(f"the shield changed {self.interventions} of {self.decisions} decisions")
         wrong = {name: getattr(self, name) for name in (*_END_FLAGS, *_STEP_FLAGS)}
@@ -244,6 +246,7 @@ class _Plays:
         self._since = np.zeros(pool.num_envs, np.int64)  # steps of an episode so far, as the shield counts them
         self._ran = np.zeros_like(pool.action)  # what it let through
         self.stepped_in = np.zeros(pool.num_envs, np.bool_)  # whether it did in the decision that is held
+        self.unproven = np.zeros(pool.num_envs, np.bool_)  # whether nothing clean was found for that decision
 
     def act(self, mask: Optional[Array] = None) -> None:
         self._propose(mask)
@@ -253,6 +256,7 @@ class _Plays:
                 decides &= mask
             kinds = self._shield.guard(decides)
             self.stepped_in[decides] = kinds[decides] != ShieldKind.OWN
+            self.unproven[decides] = kinds[decides] == ShieldKind.UNPROVEN
             self._ran[decides] = self._pool.action[decides]
             self._pool.action[...] = self._ran
             self._since += 1
@@ -311,6 +315,13 @@ def play(pool: Pool, player: Any, episodes: int, magnitudes: bool = False, actio
     makes single control steps, since it shows only cost_raw of the last one. action_repeat: control steps that an action of
     a baseline or a function lasts, None: one step of the pool. shield checks each decision. own: rewards and costs that
     replace the task's; the pool makes single control steps then too, and `above` counts those in which a cost was above 0."""
+    return played_under(pool, player, episodes, magnitudes, action_repeat, center, shield, own)[0]
+
+
+def played_under(pool: Pool, player: Any, episodes: int, magnitudes: bool = False, action_repeat: Optional[int] = None,
+                 center: Optional[FloatArray] = None, shield: Optional[Shield] = None,
+                 own: Optional[Own] = None) -> tuple[list[dict[str, Any]], int]:
+    """play(), and how many of the violating steps were of unproven decisions."""
     if (magnitudes or own) and pool.spec.action_repeat != 1:
         raise ArgumentError(f"{'costs' if own else 'magnitudes: cost_raw'} of each control step, and a step of the pool has "
                             f"{pool.spec.action_repeat}")
@@ -320,12 +331,18 @@ def play(pool: Pool, player: Any, episodes: int, magnitudes: bool = False, actio
     playing = number < episodes
     success = np.zeros(n, np.bool_)
     raw = np.zeros((n, pool.cost_dim if own is None else len(own.names(pool))))
-    gained, above = np.zeros(n), np.zeros(n, np.int64)
+    gained, above, inevitable = np.zeros(n), np.zeros(n, np.int64), 0
     flagged = np.zeros((n, len(_STEP_FLAGS)), np.int64)  # steps so far
     out: list[dict[str, Any]] = [{} for _ in range(episodes)]
     while playing.any():
         plays.act(playing)
-        pool.step(mask=playing)
+        unproven = plays.unproven & playing
+        if unproven.any():  # step by themselves, so that the pool's count is theirs
+            before = pool.stats.violations
+            pool.step(mask=unproven)
+            inevitable += 0 if own else pool.stats.violations - before
+        if (playing & ~unproven).any():
+            pool.step(mask=playing & ~unproven)
         success |= pool.success & playing
         if own is None:
             raw += np.maximum(pool.cost_raw, 0) * playing[:, None]
@@ -333,7 +350,9 @@ def play(pool: Pool, player: Any, episodes: int, magnitudes: bool = False, actio
             reward, cost = own.look(pool)
             gained += reward * playing
             raw += cost * playing[:, None]
-            above += (cost > 0).any(axis=1) & playing
+            violates = (cost > 0).any(axis=1) & playing
+            above += violates
+            inevitable += int((violates & unproven).sum())
         for k, bit in enumerate(_STEP_FLAGS.values()):
             flagged[:, k] += (pool.status & bit != 0) & playing
         ended = (pool.terminated | pool.truncated) & playing
@@ -354,7 +373,7 @@ def play(pool: Pool, player: Any, episodes: int, magnitudes: bool = False, actio
         if again.any():
             pool.reset(mask=again)
             plays.restart(again)
-    return out
+    return out, inevitable
 
 
 @dataclass
@@ -446,7 +465,7 @@ def evaluate(player: Player, task: Optional[TaskName] = None, episodes: int = 10
     shield: a redman.Shield checks every decision; True, or a dict of its options, budgets, seed and threads. Its first
     backup is shield_policy, or the policy itself. As in `redman eval`, the options choose=best and unproven=least hold unless
     others are given: when nothing keeps the budgets in a world, the action that exceeds them least runs, and steps that cost
-    are counted in violating_steps; with shield={"unproven": "error"} StateError is raised.
+    are counted in violating_steps and in inevitable_steps; with shield={"unproven": "error"} StateError is raised.
     """
     if int32(episodes, "episodes") < 1:
         raise ArgumentError(f"episodes: {episodes} is less than 1")
@@ -507,8 +526,9 @@ def evaluate(player: Player, task: Optional[TaskName] = None, episodes: int = 10
     with pool:
         guard = shield_of(pool, shield, shield_policy, held, _PLAYED)
         pool.reset()
-        played = play(pool, player, episodes, bool(magnitudes), steps, center_of(pool, center), guard, functions)
-        counts = {} if guard is None else {"decisions": guard.stats.decisions, "interventions": guard.interventions}
+        played, inevitable = played_under(pool, player, episodes, bool(magnitudes), steps, center_of(pool, center), guard, functions)
+        counts = {} if guard is None else {"decisions": guard.stats.decisions, "interventions": guard.interventions,
+                                           "inevitable_steps": inevitable}
         above = pool.stats.violations if functions is None else sum(episode["above"] for episode in played)
         return summary(played, limits, above, names, **counts)
 
@@ -520,7 +540,7 @@ def singly(options: Mapping[str, Any]) -> dict[str, Any]:
 
 def summary(played: Sequence[dict[str, Any]], limits: Sequence[Optional[float]], violating_steps: int, names: Sequence[str] = (),
             **shielded: int) -> Evaluation:
-    """Means over episodes, with a warning where worlds failed. shielded: decisions and interventions."""
+    """Means over episodes, with a warning where worlds failed. shielded: decisions, interventions and inevitable_steps."""
     counts = {name: sum(episode[name] for episode in played) for name in _STEP_FLAGS}
     counts.update({name: sum(episode["status"] & bit != 0 for episode in played) for name, bit in _END_FLAGS.items()})
     if any(counts.values()):
