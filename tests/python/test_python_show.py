@@ -336,7 +336,15 @@ class Drawn(unittest.TestCase):
             for seed in (0, 1):
                 redman.train("bandit", steps=500, seed=seed, envs=4, progress=False, out=Path(folder, f"r{seed}"))
             self.assertEqual(redman.compare(folder, episodes=4).rows[0].runs, 2)
-            self.assertEqual(redman.compare(Path(folder, "r0"), Path(folder, "r1"), episodes=4).rows[0].runs, 2)
+            r0, r1 = Path(folder, "r0"), Path(folder, "r1")
+            self.assertEqual(redman.compare(r0, r1, episodes=4).rows[0].runs, 2)
+            again = Path(folder, "all", "link")  # one run is one seed, however it is called
+            again.parent.mkdir()
+            again.symlink_to(r0)
+            for given in ((r0, r0, f"{folder}/r1/../r0", again, r1), ({"one": [r0, again, redman.Run.load(r0), r1]},)):
+                self.assertEqual([run.seed for run in next(iter(redman.compare(*given, episodes=4).runs.values()))], [0, 1])
+            self.assertEqual([one.seed for one in redman.curve(r0, again, f"{folder}/r1/../r0", r1)], [0, 1])
+            self.assertEqual(len(redman.curve(r0, r0)), 1)
 
     @unittest.skipUnless(TOOL, "no tool")
     def test_groups_are_those_of_the_tool(self):

@@ -157,6 +157,14 @@ def _runs(given: Any) -> Iterable[Run]:
         raise UsageError(f"compare: it must be a run, a run folder or a list of these, not a {type(given).__name__}")
 
 
+def _once(runs: Iterable[Run]) -> list[Run]:
+    """The runs without those that were given before, also by another path of the folder: a run is no second seed."""
+    once: dict[Any, Run] = {}
+    for run in runs:
+        once.setdefault(id(run) if run.folder is None else run.folder.resolve(), run)
+    return list(once.values())
+
+
 @keywords(aliases={"num_episodes": "episodes", "n_episodes": "episodes", "n_eval_episodes": "episodes"})
 def compare(*runs: Any, episodes: Optional[int] = None) -> Comparison:
     """Compares runs over seeds: curves with bands, and a table of returns, costs and groups with intervals.
@@ -166,7 +174,7 @@ def compare(*runs: Any, episodes: Optional[int] = None) -> Comparison:
         redman.compare({"small": ["runs/a0", "runs/a1"], "large": ["runs/b0", "runs/b1"]})
 
     Runs that differ in their seeds alone are a row, named after their algorithm and, where it has several rows, what distinguishes
-    them ("ppo: shield predict"); a dict gives the rows names of your own. The policy of each run plays 100 new episodes, or as
+    them ("ppo: shield predict"); a dict gives the rows names of your own. A run that is given twice counts once. The policy of each run plays 100 new episodes, or as
     many as `episodes` says. The tool's `redman report` makes a page of run folders, with all algorithms and tasks.
     """
     named: dict[str, list[Run]] = {}
@@ -180,7 +188,7 @@ def compare(*runs: Any, episodes: Optional[int] = None) -> Comparison:
     for run in loose:
         rivals = [other._settings for other in loose if (other.task, other.algo) == (run.task, run.algo)]
         named.setdefault(run.algo + differences(run._settings, rivals), []).append(run)
-    named = {name: these for name, these in named.items() if these}
+    named = {name: _once(these) for name, these in named.items() if these}
     if not named:
         raise UsageError("compare: give runs, run folders, or a dict of them by name")
     judged = {name: [run.judged() if episodes is None else run.evaluate(episodes=episodes) for run in these]

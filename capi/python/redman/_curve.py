@@ -157,9 +157,12 @@ def settings_of(config: Mapping[str, Any]) -> dict[str, str]:
 
 def curve(*folders: Union[str, os.PathLike[str]], each: bool = False) -> Union[Curve, Curves]:
     """The curve of a run folder, or several in one picture: runs that differ in their seeds alone as a mean with a band, or,
-    with each=True, a line for each."""
-    curves = [read(folder) for folder in folders]
-    return curves[0] if len(curves) == 1 else Curves(curves, each)
+    with each=True, a line for each. A folder that is given twice, also by another path, is drawn once."""
+    once: dict[Path, Union[str, os.PathLike[str]]] = {}
+    for folder in folders:
+        once.setdefault(Path(folder).resolve(), folder)
+    curves = [read(folder) for folder in once.values()]
+    return curves[0] if len(folders) == 1 else Curves(curves, each)
 
 
 class _Line:
