@@ -348,6 +348,12 @@ class Several(Folders):
         more = redman.train(resume=[run.folder for run in runs[:2]], steps=400, progress=False)
         self.assertEqual([run.env_steps >= 400 for run in more], [True, True])
 
+    def test_what_is_given_twice_is_no_second_sample(self):
+        for wrong, words in (({"seed": [0, 1, 0]}, r"train: seed \[0, 1, 0\]: one of them is given twice"),
+                             ({"algo": ["ppo", "PPO"]}, "algo .*: one of them is given twice")):
+            with self.assertRaisesRegex(redman.UsageError, words):
+                redman.train(**{"task": TASK, "steps": 200, **wrong})
+
     def test_an_empty_list_trains_nothing(self):
         with self.assertRaisesRegex(redman.ArgumentError, "empty"):
             redman.train([], steps=100)

@@ -174,6 +174,10 @@ def _several(arguments: dict[str, Any]) -> list[Run]:
             for name in ("task", "algo", "seed", "resume")}
     if any(not values for values in axes.values()):
         raise ArgumentError("train: a list is empty: there is nothing to train")
+    for name, values in axes.items():  # a run that is asked for twice is no second sample
+        named = [folded(value) if isinstance(value, str) else value for value in values]
+        if any(named.index(value) < i for i, value in enumerate(named)):
+            raise UsageError(f"train: {name} {values}: one of them is given twice")
     runs = []
     for chosen in product(*axes.values()):
         one = {**arguments, **dict(zip(axes, chosen))}
@@ -306,7 +310,8 @@ def _wanted(given: Mapping[str, Any]) -> Settings:
     of_task, of_algo = split_options(name, algo, asked)
     of_task = list(named_options(dict(of_task)).items())
     if teach is not None and "replay_rows" in _discovery.algo(algo).options:
-        raise UsageError(f"from_: {algo} cannot begin with a teacher; only algorithms without a replay memory can")
+        raise UsageError(f"from_: {algo} cannot begin with a teacher; only algorithms without a replay memory can, such as "
+                         "algo=\"ppo_lag\". Agent.learn_from lets an agent with a replay memory learn from a recording")
     if teach is not None and not teach.acts:
         of_task = [*teach.task_options(name), *of_task]
         of_algo = [*teach.algo_options(of_algo), *of_algo]
