@@ -88,7 +88,7 @@ class Tensor(np.ndarray):
 def omnisafe():
     """CMDP, the registry of its classes, and tables of settings."""
     if _missing("torch"):
-        _module("torch", device=str, float32=np.float32, from_numpy=lambda x: x.view(Tensor),
+        _module("torch", device=str, float32=np.float32, from_numpy=lambda x: x.view(Tensor), zeros=lambda *shape: np.zeros(shape, np.float32).view(Tensor),
                 tensor=lambda x, dtype=None, device=None: np.array(x, dtype).view(Tensor))
     if not _missing("omnisafe"):
         return

@@ -4,19 +4,27 @@ every public name says what it is.
     python3 test_python_coverage.py --table     the functions, and the name that calls each
 """
 import ast
+import contextlib
 import dataclasses
 import enum
 import fnmatch
+import importlib
 import inspect
+import io
 import operator
 import pydoc
 import re
 import sys
+import textwrap
 import unittest
 from collections import defaultdict, deque
 from pathlib import Path
 
+import numpy as np
+
+import peers
 import redman
+import stubs
 from redman import _abi, _import_abi
 from redman._record import Record
 
@@ -280,6 +288,49 @@ class Manual(unittest.TestCase):
         for name in redman.__all__:
             module = getattr(getattr(redman, name), "__module__", "redman")
             self.assertIn(module, ("redman", "typing"), name)
+
+
+class Adapters(unittest.TestCase):
+    """The adapters' texts: a stranger learns every argument from them, and what they show works, with stubs of the peers too."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.modules = {name: importlib.import_module(f"redman.{name}") for name in ("gym", "pettingzoo")}  # work without peers
+        peers.stand_in()
+        stubs.safety(), stubs.sb3(), stubs.omnisafe()
+        cls.modules.update((name, importlib.import_module(f"redman.{name}")) for name in ("safety", "sb3", "omnisafe"))
+
+    def things(self):
+        """Public classes and functions by their names."""
+        for module, names in self.modules.items():
+            for name in names.__all__:
+                if callable(getattr(names, name)):
+                    yield f"{module}.{name}", getattr(names, name)
+
+    def test_every_argument_has_a_word(self):
+        untold = []
+        for name, thing in self.things():
+            if inspect.isfunction(thing):
+                untold += untold_of(name, thing)
+                continue
+            untold += untold_of(f"{name}()", thing)
+            for part, member in vars(thing).items():
+                if part[0] != "_" and (inspect.isfunction(member) or isinstance(member, (property, staticmethod))):
+                    self.assertTrue(inspect.getdoc(member), f"{name}.{part}")
+                    untold += untold_of(f"{name}.{part}", member) if inspect.isfunction(member) else []
+        self.assertEqual(untold, [])
+
+    def test_each_has_an_example_that_works(self):
+        for name, thing in self.things():
+            shown = re.findall(r"(?m)^\n((?:    .*\n)+)", inspect.getdoc(thing) + "\n")
+            with self.subTest(name):
+                self.assertTrue(shown, "there is none")
+                for lines in map(textwrap.dedent, shown):
+                    code = compile(lines, name, "exec")
+                    missing = "register" in name and not peers.installed("gymnasium") or "ppo_kwargs" in name and not peers.installed("torch")
+                    if not missing:
+                        with contextlib.redirect_stdout(io.StringIO()):
+                            exec(code, {"redman": redman, "np": np, "torch": sys.modules.get("torch")})
 
 
 def table():

@@ -11,7 +11,20 @@ from ._rows import FloatArray
 
 @dataclass(frozen=True)
 class Defaults:
-    """Settings with which redman's own PPO-Lagrangian learns a task; a learner steps at its rate of decisions."""
+    """Settings with which redman's own PPO-Lagrangian learns a task; a learner steps at its rate of decisions.
+
+        d = redman.gym.defaults("ball_run")
+        print(d.action_repeat, d.discount, d.hidden, d.cost_limit)
+
+    task: its name. action_repeat: control steps of a decision. center: [action_dim] in [-1, 1], the pose that a new policy
+    commands. init_std: standard deviation of a new policy's actions about it. discount: of a decision, in [0, 1]. gae_lambda: in
+    [0, 1]. cost_limit: on the sum of "cost" over an episode, None without one; cost_limits: of every cost that has one, by
+    name. normalize_obs: by running mean and deviation; obs_clip: the bound on them then. hidden: widths of the networks' hidden
+    layers. activation: "tanh", "elu" or "relu". num_envs: worlds. horizon: decisions of each world from one update to the next.
+    episode: decisions of a whole episode. passes: over the data of an update; minibatches: of each pass. learning_rate: of both
+    networks. kl_target: of an update, nats. clip: of the probability ratio. max_grad_norm: largest norm of a gradient. trust_kl: of a step
+    that a trust region bounds, nats. multiplier_lr: of the Lagrange multiplier, per update and unit of cost over the limit.
+    """
 
     task: str
     action_repeat: int  # control steps of a decision
@@ -39,7 +52,12 @@ class Defaults:
 
 
 def defaults(task: str, options: Optional[Mapping[str, Any]] = None) -> Defaults:
-    """The settings for learning of a task with these options."""
+    """The settings for learning of a task, a Defaults.
+
+        d = redman.gym.defaults("ball_run", {"max_steps": 100})
+
+    task: its name. options: of the task, a dict; None: its defaults. NotFoundError for a task or an option that does not exist.
+    """
     with Pool(task, options=options) as pool:
         own = pool.task.defaults
         options_of = {**algos()["trpo_lag"].options, **algos()["ppo_lag"].options}

@@ -181,18 +181,31 @@ class _Named:
 class Env(_Named, _Env):
     """One world of a task.
 
-    seed: used by the first reset() without a seed; None draws one from the system.
-    options: of the task, as `redman tasks NAME` prints them.
-    action_repeat: control steps of a step, whose rewards and costs are summed; "task": those of a decision of the task's own
-    learner.
-    center: what an action of 0 does; "initial": the pose with which the task's own learner begins.
-    shield: True, or a dict of the options of a redman.Shield, its budgets, seed and threads. shield_policy: its first
-    backup, a policy, its file or run folder, or "trained"; it must hold its actions for as many control steps as a step has.
+        env = redman.gym.Env("ball_run", seed=7, action_repeat="task")
+        obs, info = env.reset()
+        for _ in range(20):
+            obs, reward, terminated, truncated, info = env.step(env.action_space.sample())
+            print(reward, info["cost"])
+        env.close()
+
+    task: its name (redman.tasks()) or a .task file. An observation is [obs_dim] float32, an action [action_dim] float32 in
+    [-1, 1], or, with a center, in [-1 - |center|, 1 + |center|].
+    seed: 0 to 2^64 - 1, used by the first reset() without a seed; None draws one from the system.
+    options: of the task, a dict, as `redman tasks NAME` prints them.
+    action_repeat: control steps of a step, 1 or more, whose rewards and costs are summed; "task": those of a decision of the
+    task's own learner.
+    center: what an action of 0 does, [action_dim] in [-1, 1]; "initial": the pose with which the task's own learner begins; None:
+    the middle of the range of each joint.
+    shield: True, or a dict of the options of a redman.Shield, its budgets, seed and threads; None: no shield. shield_policy: its
+    first backup, a policy, its file or run folder, or "trained"; it must hold its actions for as many control steps as a step has.
     render_mode: what render() returns, "rgb_array", "depth_array", or those with "_list"; None: nothing. camera: its name; None: the
-    task's first. width, height: pixels of a picture.
+    task's first. width, height: of a picture, in pixels.
     named: observations are a dict with an entry for each field.
     observe: what an observation has, of "state", "rgb", "depth", "segmentation", "points" and "voxels", as a list or joined by +:
     option modality in other words. Without "state" it has no row.
+
+    Errors: NotFoundError for a task, an option or a camera that does not exist, RangeError and ArgumentError for a value that
+    is out of its range or has a wrong shape; each says what it may be.
     """
 
     def __init__(self, task: str, *, seed: Optional[int] = None, options: Optional[Mapping[str, Any]] = None,
@@ -204,7 +217,10 @@ class Env(_Named, _Env):
         self.observation_space, self.action_space = self._begin(worlds, render_mode, named)
 
     def reset(self, *, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None) -> tuple[Any, Info]:
-        """Begins a new episode: that of the seed, or the next of the world's own stream. options must be empty."""
+        """Begins a new episode and returns (observation, info).
+
+        seed: 0 to 2^64 - 1, the episode of this seed; None: the next of the world's own stream. options: None or an empty
+        dict, since the task's are given to Env; others raise ArgumentError."""
         self.worlds.no_options(options)
         seed = None if seed is None else whole(seed, "seed", 0, (1 << 64) - 1)
         super().reset(seed=seed)
@@ -213,7 +229,12 @@ class Env(_Named, _Env):
         return self._seen(self.worlds.obs[0].copy(), 0), self._began_of(0)
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, Info]:
-        """Observation, reward, terminated, truncated, info, after an action [action_dim]."""
+        """Makes a step and returns (observation, reward, terminated, truncated, info).
+
+        action: [action_dim]; entries outside of [-1, 1] are clipped, and one that is not finite ends the episode. reward: the
+        sum over the control steps. terminated: the episode ended by what happened in it; truncated: by its length, or as
+        something went wrong (info["status"]). ArgumentError for another shape, StateError before the first reset and after
+        an end."""
         w = self.worlds
         w.act_alone(action)
         w.pool.step()
@@ -223,18 +244,30 @@ class Env(_Named, _Env):
                 self._told_of(0))
 
     def render(self) -> Any:
-        """A picture [height][width][3] or depth [height][width] in m, 0 where there is nothing; None without a render_mode. With
+        """A picture [height][width][3] uint8 or depth [height][width] in m, 0 where there is nothing; None without a render_mode. With
         "rgb_array_list" and "depth_array_list", a list of those of all steps and resets since the last call."""
         return self._pictured(0) if self.render_mode else None
 
     def close(self) -> None:
+        """Destroys the world; nothing else may be called afterwards."""
         self.worlds.close()
         super().close()
 
 
 class VectorEnv(_Named, _VectorEnv):
-    """num_envs worlds of a task, stepped together on `threads` threads. Arguments in addition to those of Env:
+    """num_envs worlds of a task, stepped together on `threads` threads.
 
+        envs = redman.gym.VectorEnv("ball_run", 8, seed=7, action_repeat="task")
+        obs, infos = envs.reset()                                               # [8][obs_dim]
+        for _ in range(20):
+            obs, reward, terminated, truncated, infos = envs.step(envs.action_space.sample())
+            print(reward.mean(), infos["cost"].mean())
+        envs.close()
+
+    task, seed, options, action_repeat, center, named, shield, shield_policy, observe, render_mode, camera, width, height: as
+    those of Env; world i begins with seed + i. Observations are [num_envs][obs_dim], actions [num_envs][action_dim].
+    num_envs: worlds, 1 or more. threads: that step them; 0: as many as there are cores; results are the same for any number.
+    max_episode_steps: what gymnasium.make_vec hands on: None, or the length that an episode has; option max_steps sets it.
     autoreset_mode: "NextStep", "SameStep", "Disabled" or Gymnasium's AutoresetMode; None: Gymnasium's default.
     copy: False returns the pool's observations, which the next call overwrites.
 
@@ -274,8 +307,11 @@ class VectorEnv(_Named, _VectorEnv):
         self._ended, self._all = np.zeros(num_envs, bool), np.ones(num_envs, bool)
 
     def reset(self, *, seed: Seeds = None, options: Optional[dict[str, Any]] = None) -> tuple[Any, Info]:
-        """Begins new episodes, everywhere or where options["reset_mask"] [num_envs] is True. seed: an int s, which means s +
-        i for world i, or a list; where it is None, worlds continue with the streams that they have."""
+        """Begins new episodes, everywhere or where options["reset_mask"] [num_envs] is True, and returns (observations, infos).
+
+        seed: an int s from 0 to 2^64 - 1, which means s + i for world i, or a list with one for each world; where it is None,
+        worlds continue with the streams that they have. options: None, or a dict of reset_mask alone, an array of bool with
+        at least one True; ArgumentError for others."""
         self.worlds.no_options(options, ("reset_mask",))
         mask = (options or {}).get("reset_mask")
         if mask is not None and not (isinstance(mask, np.ndarray) and mask.shape == (self.num_envs,)
@@ -288,7 +324,11 @@ class VectorEnv(_Named, _VectorEnv):
         return self._observed(), self._rows(self._told_but(began), began)
 
     def step(self, actions: Any) -> tuple[Any, Array, Array, Array, Info]:
-        """Observations, rewards, terminated, truncated, infos, after actions [num_envs][action_dim]."""
+        """Makes a step and returns (observations, rewards, terminated, truncated, infos), each with a row or entry for each world.
+
+        actions: [num_envs][action_dim]; entries outside of [-1, 1] are clipped. rewards: [num_envs], sums over the control
+        steps. infos: arrays by name, each with a mask of the worlds that have an entry ("_cost" of "cost"). ArgumentError for
+        another shape, StateError before the first reset."""
         w = self.worlds
         w.act(actions)
         w.pool.step()
@@ -353,16 +393,18 @@ class VectorEnv(_Named, _VectorEnv):
         return rows
 
     def step_async(self, actions: Any) -> None:
-        """With step_wait(), the two halves of a step that wrappers of Gymnasium 0.x call."""
+        """With step_wait(), the two halves of a step that wrappers of Gymnasium 0.x call. actions: as those of step."""
         self._actions = actions
 
     def step_wait(self, **_: Any) -> Any:
+        """Makes the step of step_async() and returns what step() returns."""
         return self.step(self._actions)
 
     def reset_async(self, seed: Seeds = None, options: Optional[dict[str, Any]] = None) -> None:
-        """With reset_wait(), the two halves of a reset that wrappers of Gymnasium 0.x call."""
+        """With reset_wait(), the two halves of a reset that wrappers of Gymnasium 0.x call. seed, options: as those of reset."""
 
     def reset_wait(self, seed: Seeds = None, options: Optional[dict[str, Any]] = None) -> Any:
+        """reset(). seed, options: as those of reset."""
         return self.reset(seed=seed, options=options)
 
     def render(self) -> Optional[tuple[Any, ...]]:
@@ -370,6 +412,7 @@ class VectorEnv(_Named, _VectorEnv):
         return tuple(self._pictured(i) for i in range(self.num_envs)) if self.render_mode else None
 
     def close_extras(self, **_: Any) -> None:
+        """Destroys the worlds; close() of Gymnasium calls it."""
         if hasattr(self, "worlds"):  # it is also called for what was never made
             self.worlds.close()
 
@@ -394,17 +437,31 @@ def _objects(where: Array, make: Any) -> Array:
 
 
 def camel(task: str) -> str:
-    """hand_over_safe_finger as HandOverSafeFinger."""
+    """The name of a task as ids have it.
+
+        redman.gym.camel("hand_over_safe_finger")       # HandOverSafeFinger
+
+    task: its name.
+    """
     return "".join(word.capitalize() for word in task.split("_"))
 
 
 def env_id(task: str) -> str:
-    """The id under which Gymnasium has a task."""
+    """The id under which Gymnasium has a task.
+
+        redman.gym.env_id("ball_run")                   # redman/BallRun-v0
+
+    task: its name.
+    """
     return f"redman/{camel(task)}-v0"
 
 
 def register() -> None:
-    """Gives Gymnasium an id for every task; importing this module does it."""
+    """Gives Gymnasium an id for every task; importing this module does it. Call it again for tasks that were added since, such as
+    those of redman.load_task. ImportError without Gymnasium.
+
+        redman.gym.register()
+    """
     if gymnasium is None:
         raise ImportError("redman.gym.register: Gymnasium is not installed; Env and VectorEnv work without it")
     for task in tasks():

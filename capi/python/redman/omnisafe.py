@@ -46,7 +46,12 @@ _GPU_TASKS = {
 
 
 def env_id(task: str) -> str:
-    """The id under which OmniSafe has a task."""
+    """The id under which OmniSafe has a task.
+
+        redman.omnisafe.env_id("ball_run")              # RedmanBallRun-v0
+
+    task: its name.
+    """
     return f"Redman{camel(task)}-v0"
 
 
@@ -59,12 +64,21 @@ _IDS: dict[str, tuple[str, _Settings]] = {
 
 
 class Redman(CMDP):
-    """num_envs worlds of a task; a world whose episode ends begins another in the same step.
+    """num_envs worlds of a task; a world whose episode ends begins another in the same step. OmniSafe makes it by itself; you
+    need it only to step worlds by hand.
 
+        env = redman.omnisafe.Redman("RedmanBallRun-v0", num_envs=4)
+        obs, info = env.reset(seed=7)                                           # a tensor [4][obs_dim]
+        action = torch.zeros(4, env.action_space.shape[0])
+        obs, reward, cost, terminated, truncated, info = env.step(action)
+        env.close()
+
+    env_id: an id of this module (redman.omnisafe.env_id, register). num_envs: worlds, 1 or more. device: of the tensors that
+    reset and step return, such as "cpu". render_mode: None or "rgb_array". width, height: of a picture, in pixels.
     settings: options, action_repeat, center, threads, shield, shield_policy, as in redman.gym.VectorEnv; they override those
     of the id. With a shield, an info has "applied" and "intervened" as tensors, and "shield", a list of texts. camera_name
     and camera_id are for OmniSafe's evaluator (its default "track" is the task's first camera). Actions are bounded by -1
-    and 1, with a `center` too.
+    and 1, with a `center` too. Option modality raises UnsupportedError; other errors are those of redman.gym.VectorEnv.
     """
 
     need_auto_reset_wrapper = False
@@ -94,17 +108,24 @@ class Redman(CMDP):
         return self._worlds.max_episode_steps
 
     def set_seed(self, seed: int) -> None:
-        """Sets the seeds of the next reset: seed + i for world i."""
+        """Sets the seeds of the next reset: seed + i for world i. seed: 0 to 2^64 - 1."""
         self._worlds.seed = int(seed)
 
     def reset(self, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None) -> tuple[Any, dict[str, Any]]:
-        """Begins new episodes everywhere. options must be empty."""
+        """Begins new episodes everywhere and returns (observations [num_envs][obs_dim], info), tensors; of a single world [obs_dim].
+
+        seed: 0 to 2^64 - 1, seed + i for world i; None: that of set_seed, or the next of the worlds' own streams. options: None
+        or an empty dict; ArgumentError for others."""
         self._worlds.no_options(options)
         self._worlds.reset(seed)
         return self._tensor(self._worlds.obs), {**self._flags(), **self._shielded(began=True)}
 
     def step(self, action: Any) -> tuple[Any, ...]:
-        """Observation, reward, cost, terminated, truncated, info; rows of one world without the axis of worlds."""
+        """Makes a step and returns (observation, reward, cost, terminated, truncated, info), tensors with a row or entry for each
+        world; of a single world without that axis.
+
+        action: a tensor [num_envs][action_dim] in [-1, 1]. reward, cost: sums over the control steps; the cost is the task's
+        own, column 0. info["final_observation"]: the last observations of the episodes that ended."""
         w = self._worlds
         w.act(action.detach().cpu().numpy().reshape(w.action.shape))
         w.pool.step()
@@ -138,16 +159,23 @@ class Redman(CMDP):
         return torch.tensor(rows if self._num_envs > 1 else rows[0], dtype=torch.float32, device=self._device)
 
     def render(self) -> Array:
-        """A picture [height][width][3] of the first world."""
+        """A picture [height][width][3] uint8 of the first world."""
         return self._worlds.render()
 
     def close(self) -> None:
+        """Destroys the worlds; nothing else may be called afterwards."""
         self._worlds.close()
 
 
 def register(name: str, task: str, **settings: Any) -> str:
-    """Registers an id of your own for a task with settings (options, threads, ...) and returns it; action_repeat and center
-    are the task's own unless given."""
+    """Registers an id of your own for a task with settings, and returns it.
+
+        redman.omnisafe.register("ShortBallRun-v0", "ball_run", options={"max_steps": 100})
+        settings = redman.omnisafe.configs("ball_run", options={"max_steps": 100})  # omnisafe.Agent("PPOLag", id, custom_cfgs=settings)
+
+    name: the id, without /; ArgumentError if it is taken. task: its name. settings: options, action_repeat, center, threads,
+    shield and shield_policy, as those of redman.gym.VectorEnv; action_repeat and center are the task's own unless given.
+    """
     if "/" in name or name in _IDS:
         raise ArgumentError(f"{name}: an id without / that is not taken")
     _IDS[name] = task, {**_DECISIONS, **settings}
@@ -158,9 +186,13 @@ def register(name: str, task: str, **settings: Any) -> str:
 def configs(task: str, algo: str = "PPOLag", steps: float = 2e6, options: Optional[Mapping[str, Any]] = None,
             num_envs: int = 64) -> dict[str, Any]:
     """custom_cfgs with which an algorithm of OmniSafe learns Redman<Task>-v0 like redman's own: discount, initial standard
-    deviation, limit, normalisation, networks and learning rates, as far as the algorithm has them.
+    deviation, limit, normalisation, networks and learning rates, as far as the algorithm has them. A nested dict.
 
-    steps: control steps summed over worlds. options: of the task; if an algorithm has no env_cfgs for them, use an id of
+        settings = redman.omnisafe.configs("ball_run", "PPOLag", steps=1e6, num_envs=32)
+        settings["algo_cfgs"]["cost_limit"] = 10        # omnisafe.Agent("PPOLag", "RedmanBallRun-v0", custom_cfgs=settings)
+
+    task: its name. algo: of OmniSafe; NotFoundError for one that it does not have. steps: control steps summed over worlds, rounded
+    to whole epochs. num_envs: worlds, 1 or more. options: of the task; if an algorithm has no env_cfgs for them, use an id of
     register() with the same options. You may change the returned dict before passing it on.
     """
     if algo not in ALGORITHM2TYPE:

@@ -74,8 +74,19 @@ class _Team:
 class ParallelEnv(_ParallelEnv):  # type: ignore[misc,valid-type]
     """One world of a task, with an agent for each group.
 
-    groups: a set that the task has ("hands", "fingers"), a list "NAME:FIELDS:FIRST-LAST;...", or None for the task's first.
-    The other arguments are those of redman.gym.Env.
+        env = redman.pettingzoo.ParallelEnv("hand_over_safe_finger", groups="hands", action_repeat="task")
+        observations, infos = env.reset(seed=7)
+        while env.agents:
+            actions = {agent: env.action_space(agent).sample() for agent in env.agents}
+            observations, rewards, terminations, truncations, infos = env.step(actions)
+        env.close()
+
+    groups: a set that the task has ("hands", "fingers"), a list "NAME:FIELDS:FIRST-LAST;..." (redman.groups), "all" for one
+    agent, or None for the task's first set. render_mode: None or "rgb_array". task, seed, options, action_repeat, center, camera,
+    width, height, shield, shield_policy: as those of redman.gym.Env, with its errors; ArgumentError or NotFoundError for a
+    set that the task does not have.
+
+    observation_space(agent) and action_space(agent) tell the shapes: [entries of its group] float32 each.
     """
 
     metadata: dict[str, Any] = {"name": "redman", "render_modes": ["rgb_array"]}
@@ -104,23 +115,26 @@ class ParallelEnv(_ParallelEnv):  # type: ignore[misc,valid-type]
 
     @property
     def cost_names(self) -> Sequence[str]:
-        """Of the entries of "costs"."""
+        """The names of the entries of "costs" in infos; the first is "cost", the task's own."""
         return self.worlds.cost_names
 
     def observation_space(self, agent: str) -> Any:
-        """The space of an agent's observations."""
+        """The space of an agent's observations, a Box. agent: its name, of possible_agents; KeyError for others."""
         return self.observation_spaces[agent]
 
     def action_space(self, agent: str) -> Any:
-        """The space of an agent's actions."""
+        """The space of an agent's actions, a Box. agent: its name, of possible_agents; KeyError for others."""
         return self.action_spaces[agent]
 
     def state(self) -> FloatArray:
-        """The whole observation."""
+        """The whole observation [obs_dim] float32, which central critics read."""
         return np.array(self.worlds.obs[0], np.float32)
 
     def reset(self, seed: Optional[int] = None, options: Optional[dict[str, Any]] = None) -> tuple[dict[str, Any], dict[str, Info]]:
-        """Begins a new episode: that of the seed, or the next of the world's own stream. options must be empty."""
+        """Begins a new episode and returns (observations, infos), dicts with an entry for each agent.
+
+        seed: 0 to 2^64 - 1, the episode of this seed; None: the next of the world's own stream. options: None or an empty
+        dict; ArgumentError for others."""
         self.worlds.no_options(options)
         self.worlds.reset(seed if seed is None else [seed])
         self.agents = list(self.possible_agents)
@@ -130,7 +144,11 @@ class ParallelEnv(_ParallelEnv):  # type: ignore[misc,valid-type]
 
     def step(self, actions: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, float], dict[str, bool], dict[str, bool],
                                                         dict[str, Info]]:
-        """Observations, rewards, terminations, truncations and infos of all agents. After an end env.agents is empty."""
+        """Makes a step and returns observations, rewards, terminations, truncations and infos, dicts with an entry for each agent;
+        the reward, the same for all, is summed over the control steps. After an end env.agents is empty.
+
+        actions: a dict with the action of each agent, [entries of its group] in [-1, 1]; ArgumentError if one is missing or
+        has another shape."""
         w = self.worlds
         w.act_alone(self._team.row(actions))
         w.pool.step()
@@ -142,10 +160,11 @@ class ParallelEnv(_ParallelEnv):  # type: ignore[misc,valid-type]
                 dict.fromkeys(agents, truncated), {agent: dict(told) for agent in agents})
 
     def render(self) -> Optional[Array]:
-        """A picture [height][width][3]; None without a render_mode."""
+        """A picture [height][width][3] uint8; None without a render_mode."""
         return self.worlds.render(0, "rgb") if self.render_mode else None
 
     def close(self) -> None:
+        """Destroys the world; nothing else may be called afterwards."""
         self.worlds.close()
 
     def _seen(self) -> dict[str, FloatArray]:
@@ -160,6 +179,16 @@ class ParallelEnv(_ParallelEnv):  # type: ignore[misc,valid-type]
 class SafeEnv:
     """num_envs worlds of a task as the multi-agent safe suites see them: agents by number, arrays [num_envs][agents][...].
 
+        env = redman.pettingzoo.SafeEnv("hand_over_safe_finger", 4, seed=7)
+        obs, share_obs, _ = env.reset()
+        for _ in range(20):
+            actions = [np.array([space.sample() for _ in range(4)]) for space in env.action_space]      # of each agent [4][its entries]
+            obs, share_obs, rewards, costs, dones, infos, _ = env.step(actions)
+        env.close()
+
+    task, groups: as those of ParallelEnv. num_envs: worlds, 1 or more. threads: that step them; 0: as many as there are cores.
+    seed: 0 to 2^64 - 1, of the first reset, seed + i for world i. options: of the task. action_repeat, center: as those of
+    redman.gym.Env, but here the defaults are those of the task's own learner. Errors are those of ParallelEnv.
     An agent that observes less than another has zeros behind its entries, so that all rows of obs have one width. Worlds restart by
     themselves: the observation after an end is that of the next episode.
     """
@@ -185,13 +214,18 @@ class SafeEnv:
         return self._team.worlds
 
     def reset(self, seed: Optional[int] = None) -> tuple[FloatArray, FloatArray, None]:
-        """obs [num_envs][agents][width], share_obs [num_envs][agents][obs_dim], and None: every action is available."""
+        """Begins new episodes everywhere and returns obs [num_envs][agents][width], share_obs [num_envs][agents][obs_dim], and None:
+        every action is available. width: of the widest agent's observation. seed: 0 to 2^64 - 1, seed + i for world i; None:
+        the next of the worlds' own streams."""
         self.worlds.reset(seed)
         return (*self._looked(), None)
 
     def step(self, actions: Sequence[Any]) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, Array, list[list[Info]], None]:
-        """actions: for each agent an array [num_envs][its entries]. Returns obs, share_obs, rewards and costs
-        [num_envs][agents][1], dones [num_envs][agents], infos and None."""
+        """Makes a step and returns obs and share_obs as reset does, rewards and costs [num_envs][agents][1], the same for all agents and
+        summed over the control steps, dones [num_envs][agents], infos [num_envs][agents] and None.
+
+        actions: for each agent an array [num_envs][its entries] in [-1, 1]; ArgumentError for another number or shape. A cost
+        is the task's own, column 0; infos have all of them, "costs" [cost_dim]."""
         w, team = self.worlds, self._team.groups
         if len(actions) != len(team):
             raise ArgumentError(f"actions: give those of {len(team)} agents, not of {len(actions)}")
@@ -214,6 +248,7 @@ class SafeEnv:
                 None)
 
     def close(self) -> None:
+        """Destroys the worlds; nothing else may be called afterwards."""
         self.worlds.close()
 
     def _looked(self) -> tuple[FloatArray, FloatArray]:

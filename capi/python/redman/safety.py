@@ -48,16 +48,40 @@ class _Told:
 
 
 class Env(_Told, gym.Env):
-    """One world of a task; arguments as redman.gym.Env."""
+    """One world of a task, with the cost as the third value of a step.
+
+        env = redman.safety.Env("ball_run", seed=7, action_repeat="task")
+        obs, info = env.reset()
+        for _ in range(20):
+            obs, reward, cost, terminated, truncated, info = env.step(env.action_space.sample())
+        env.close()
+
+    task, seed, options, action_repeat, center, shield, shield_policy, render_mode, camera, width, height, named, observe: as those of
+    redman.gym.Env, and so are observations, actions, reset, render and errors.
+    """
 
     def step(self, action: Any) -> tuple[Any, float, float, bool, bool, gym.Info]:  # type: ignore[override]
-        """Observation, reward, cost, terminated, truncated, info."""
+        """Makes a step and returns (observation, reward, cost, terminated, truncated, info).
+
+        action: [action_dim], as that of redman.gym.Env. cost: info["cost_sum"], the task's own cost (column 0), summed over
+        the control steps like the reward."""
         obs, reward, terminated, truncated, info = super().step(action)
         return obs, reward, info["cost_sum"], terminated, truncated, info
 
 
 class VectorEnv(_Told, gym.VectorEnv):
-    """num_envs worlds of a task in one pool; arguments as redman.gym.VectorEnv, without autoreset_mode."""
+    """num_envs worlds of a task in one pool, with the costs as the third value of a step. A world whose episode ends begins
+    another in the same step.
+
+        envs = redman.safety.VectorEnv("ball_run", 8, seed=7, action_repeat="task")
+        obs, infos = envs.reset()                                               # [8][obs_dim]
+        for _ in range(20):
+            obs, reward, cost, terminated, truncated, infos = envs.step(envs.action_space.sample())
+        envs.close()
+
+    task: its name or a .task file. num_envs: worlds, 1 or more. kwargs: the other arguments of redman.gym.VectorEnv, without
+    autoreset_mode. Option modality raises UnsupportedError, since the last pictures of an episode are overwritten by then.
+    """
 
     _old = True
 
@@ -65,13 +89,21 @@ class VectorEnv(_Told, gym.VectorEnv):
         super().__init__(task, num_envs, autoreset_mode="SameStep", **kwargs)  # modalities are refused there
 
     def step(self, actions: Any) -> tuple[Any, Array, Array, Array, Array, gym.Info]:  # type: ignore[override]
-        """Observations, rewards, costs, terminated, truncated, infos."""
+        """Makes a step and returns (observations, rewards, costs, terminated, truncated, infos).
+
+        actions: [num_envs][action_dim], as those of redman.gym.VectorEnv. rewards, costs, terminated, truncated: [num_envs];
+        a cost is the task's own (column 0), summed over the control steps."""
         obs, reward, terminated, truncated, info = super().step(actions)
         return obs, reward, self.cost.astype(np.float64), terminated, truncated, info
 
 
 def env_id(task: str) -> str:
-    """The id of a task that belongs to no other environment."""
+    """The id of a task that belongs to no other environment.
+
+        redman.safety.env_id("ball_run")                # SafetyRedmanBallRun-v0
+
+    task: its name.
+    """
     return f"SafetyRedman{gym.camel(task)}-v0"
 
 
@@ -80,7 +112,11 @@ def _plain_id(task: str) -> str:
 
 
 def register() -> None:
-    """Gives Safety-Gymnasium ids for every task; importing this module does it where it can."""
+    """Gives Safety-Gymnasium ids for every task; importing this module does it where it can, and redman.safety.unregistered says
+    why it could not. ImportError without Safety-Gymnasium.
+
+        redman.safety.register()                        # also for tasks that were added since
+    """
     import safety_gymnasium
     from gymnasium.envs.registration import registry
     for task in tasks():

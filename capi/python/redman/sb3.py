@@ -47,7 +47,19 @@ Indices = Union[None, int, Iterable[int]]
 
 class VecEnv(_VecEnv):
     """num_envs worlds of a task in one pool; a world whose episode ends begins another in the same step, and the last
-    observation is info["terminal_observation"]. Arguments are those of redman.gym.VectorEnv, and penalty.
+    observation is info["terminal_observation"].
+
+        env = redman.sb3.VecEnv("ball_run", 8, seed=7, action_repeat="task", center="initial", penalty=0.1)
+        obs = env.reset()                                                       # [8][obs_dim]
+        for _ in range(20):
+            actions = [env.action_space.sample() for _ in range(env.num_envs)]
+            obs, rewards, ended, infos = env.step(actions)
+        env.close()
+
+    penalty: subtracted from the reward, times the task's own cost (column 0); 0 leaves the reward as it is.
+    render_mode: None or "rgb_array". task, num_envs, seed, options, threads, action_repeat, center, camera, width, height, shield,
+    shield_policy: as those of redman.gym.VectorEnv, with its errors. Option modality raises UnsupportedError: with
+    DummyVecEnv, redman.gym.Env has pictures and clouds.
 
     seed(s) sets the seeds of the next reset, s + i for world i. The worlds are not separate objects: attributes and methods
     of "an environment" are those of this class, the same for all, except in env_method("render").
@@ -83,7 +95,8 @@ class VecEnv(_VecEnv):
         return self.worlds.pool
 
     def reset(self) -> Array:
-        """Begins new episodes: those of seed(), else the next of the worlds' own streams. There are no options."""
+        """Begins new episodes everywhere, those of seed(), else the next of the worlds' own streams, and returns the observations
+        [num_envs][obs_dim]. set_options() must not have been given any: ArgumentError."""
         for options in self._options:
             self.worlds.no_options(options)
         self.worlds.reset(None if all(s is None for s in self._seeds) else self._seeds)
@@ -99,11 +112,12 @@ class VecEnv(_VecEnv):
         return np.array(self.pool.obs)
 
     def step_async(self, actions: Array) -> None:
-        """Takes the actions of the step that step_wait makes."""
+        """Takes the actions [num_envs][action_dim] of the step that step_wait makes; ArgumentError for another shape."""
         self.worlds.act(actions)
 
     def step_wait(self) -> tuple[Array, Array, Array, list[dict[str, Any]]]:
-        """Observations, rewards, whether episodes ended, infos."""
+        """Makes the step and returns observations [num_envs][obs_dim], rewards [num_envs], whether episodes ended [num_envs], and a
+        list of infos, one for each world."""
         w = self.worlds
         w.pool.step()
         costs, ended = w.cost.copy(), w.terminated | w.truncated
@@ -151,22 +165,25 @@ class VecEnv(_VecEnv):
         self.worlds.close()
 
     def get_images(self) -> list[Array]:
-        """A picture [height][width][3] of each world."""
+        """A list with a picture [height][width][3] uint8 of each world."""
         return [self.worlds.render(i) for i in range(self.num_envs)]
 
     def get_attr(self, attr_name: str, indices: Indices = None) -> list[Any]:
-        """This object's attribute, once for each world."""
+        """A list of this object's attribute attr_name, once for each world of indices: a number, several, or None for all."""
         value = getattr(self, attr_name)
         return [value for _ in self._get_indices(indices)]
 
     def set_attr(self, attr_name: str, value: Any, indices: Indices = None) -> None:
-        """Sets this object's attribute; all worlds share it."""
+        """Sets this object's attribute attr_name to value. All worlds share it: indices must be None or name all of them, else
+        ValueError."""
         if len(list(self._get_indices(indices))) != self.num_envs:
             raise ValueError(f"{attr_name}: the worlds of a pool share it: set it for all of them")
         setattr(self, attr_name, value)
 
     def env_method(self, method_name: str, *method_args: Any, indices: Indices = None, **method_kwargs: Any) -> list[Any]:
-        """Calls a method of the pool that takes a world (render, state, set_state, hash, poses, contacts), for each."""
+        """Calls a method of the pool that takes a world, for each world of indices (a number, several, or None for all), and returns
+        a list of the results. method_name: render, state, set_state, hash, poses or contacts; AttributeError for others.
+        method_args, method_kwargs: the method's own, without env."""
         if method_name not in ("render", "state", "set_state", "hash", "poses", "contacts"):
             raise AttributeError(f"{method_name}: no method of one world")
         chosen = self._get_indices(indices)
@@ -176,12 +193,17 @@ class VecEnv(_VecEnv):
         return [method(*method_args, env=i, **method_kwargs) for i in chosen]
 
     def env_is_wrapped(self, wrapper_class: type, indices: Indices = None) -> list[bool]:
-        """No world has a wrapper, but infos have what a Monitor writes, so the answer for Monitor is true."""
+        """For each world of indices (None: all) whether wrapper_class is around it. No world has a wrapper, but infos have what a
+        Monitor writes, so the answer for Monitor is true."""
         return [wrapper_class is _Monitor for _ in self._get_indices(indices)]
 
 
 class CostCallback(_BaseCallback):
-    """Logs the mean cost of the last hundred episodes, rollout/ep_cost_mean/<name>, when a rollout ends."""
+    """Logs the mean cost of the last hundred episodes, rollout/ep_cost_mean/<name>, when a rollout ends. It takes no arguments,
+    and needs the infos of a VecEnv of this module.
+
+        log = redman.sb3.CostCallback()                 # model.learn(500_000, callback=log)
+    """
 
     def __init__(self) -> None:
         super().__init__()
@@ -198,8 +220,15 @@ class CostCallback(_BaseCallback):
 
 
 def ppo_kwargs(task: str, options: Optional[Mapping[str, Any]] = None, num_envs: int = 64) -> dict[str, Any]:
-    """Arguments with which PPO learns a task like redman's own, with VecNormalize(VecEnv(task, num_envs,
-    action_repeat="task", center="initial"), norm_reward=False, clip_obs=5)."""
+    """Arguments with which Stable-Baselines3's PPO learns a task like redman's own, a dict. They are for VecNormalize(VecEnv(task,
+    num_envs, action_repeat="task", center="initial"), norm_reward=False, clip_obs=5), and need torch.
+
+        env = redman.sb3.VecEnv("ball_run", 64, action_repeat="task", center="initial")
+        settings = redman.sb3.ppo_kwargs("ball_run", num_envs=64)       # PPO("MlpPolicy", VecNormalize(env, ...), **settings)
+
+    task: its name. options: of the task, as those of VecEnv. num_envs: worlds of that VecEnv, 1 or more. NotFoundError for a
+    task or an option that does not exist.
+    """
     from torch import nn
     d = defaults(task, options)
     rows = num_envs * d.horizon
