@@ -11,7 +11,7 @@ class Error(Exception):
 
 
 class ArgumentError(Error, ValueError):
-    """Not finite, malformed, of the wrong shape."""
+    """A value is not finite, malformed, or of the wrong shape."""
 
     code = ResultCode.ARGUMENT
 
@@ -21,13 +21,13 @@ class UsageError(ArgumentError, TypeError):
 
 
 class RangeError(Error, ValueError, IndexError):
-    """Outside the documented bounds, or an index past the end."""
+    """A value is outside of its documented bounds, or an index is past the end."""
 
     code = ResultCode.RANGE
 
 
 class StateError(Error, RuntimeError):
-    """Calls in the wrong order."""
+    """Calls were made in the wrong order, such as a step before the first reset."""
 
     code = ResultCode.STATE
 
@@ -39,25 +39,25 @@ class AllocationError(Error, MemoryError):
 
 
 class FileError(Error, OSError):
-    """The file system refused."""
+    """The operating system could not open, read or write a file."""
 
     code = ResultCode.IO
 
 
 class FormatError(Error, ValueError):
-    """Truncated, corrupt or foreign bytes."""
+    """A file or bytes are incomplete, corrupt, or in another format."""
 
     code = ResultCode.FORMAT
 
 
 class VersionError(Error, ValueError):
-    """A newer file or library, or a policy of another task or options."""
+    """A file or library is too new, or a policy is of another task or other options."""
 
     code = ResultCode.VERSION_MISMATCH
 
 
 class UnsupportedError(Error, NotImplementedError):
-    """Left out of this build, or not defined for this combination."""
+    """Something was left out of this build, or is not defined for this combination of arguments."""
 
     code = ResultCode.UNSUPPORTED
 
@@ -69,13 +69,13 @@ class PhysicsError(Error, ArithmeticError):
 
 
 class NotFoundError(Error, LookupError):
-    """An unknown name; the text offers the nearest."""
+    """A name is unknown; the text offers the nearest known one."""
 
     code = ResultCode.NOT_FOUND
 
 
 class MissingFileError(NotFoundError, FileNotFoundError):
-    """A file that does not exist."""
+    """A file or folder does not exist."""
 
 
 class CancelledError(Error, RuntimeError):

@@ -442,10 +442,16 @@ def evaluate(player: Player, task: Optional[TaskName] = None, episodes: int = 10
              magnitudes: Optional[bool] = None, *, action_repeat: Union[None, int, str] = None, center: Center = None,
              shield: Shielding = None, shield_policy: Optional[Backup] = None, reward: Optional[RowFunction] = None,
              costs: Optional[Costs] = None) -> Evaluation:
-    """How good a policy is over whole episodes: the same ones as `redman eval` plays for the same seed and number of worlds.
+    """How good a policy is over whole episodes, an Evaluation: the same episodes as `redman eval` plays for the same seed and number
+    of worlds.
+
+        print(redman.evaluate("runs/first"))
+        print(redman.evaluate("trained", "ball_run", episodes=500, cost_limits=20).cost_mean)
 
     player: a Policy, a Run, a run folder or policy file, an Agent, "trained" (the policy that comes with the task), a baseline
     ("zero", "hold", "random"), a function of rows obs [num_envs][obs_dim], or a model with Stable-Baselines3's predict.
+    task: None is that of the player. episodes: 1 or more. num_envs: worlds that play side by side, 1 or more. seed: 0 to
+    2^64 - 1, seed + i for world i. options: of the task, a dict.
 
     For a policy that comes from a run, the run's task, options, limits and cost signal are used, as in `redman eval --policy
     FOLDER`; arguments override them. For a model that has an environment of redman.sb3, the task, options, action_repeat,

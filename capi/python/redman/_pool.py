@@ -157,7 +157,9 @@ class Pool(Hinted):
     Rows (obs, action, reward, cost, ...) are views of memory that reset and step overwrite: copy what you want to keep. They
     stay valid after the pool is closed. One thread at a time uses a pool; others wait. Options are a dict (`pool.options`
     has all); the files of a robot (my.urdf) and an object (mug.object) stand for the names of those in them.
-    task: a name, redman.task(name), a .task file, or an id of Gymnasium's. threads: 0 or 1: the caller's thread only.
+    task: a name, redman.task(name), a .task file, a class of your own (redman.Task), or an id of Gymnasium's. num_envs: worlds, 1
+    or more. seed: 0 to 2^64 - 1, of the worlds' own streams. threads: 0 or 1: the caller's thread only; the bytes are the same
+    for any number.
     autoreset: what a step does with worlds that ended: "same_step" begins the next episode in it, "next_step" in the step
     that follows, "off" leaves it to reset(mask=...). ranks: this pool has the worlds of one process of several
     (redman.Ranks).
@@ -240,12 +242,12 @@ class Pool(Hinted):
 
     @property
     def reward(self) -> FloatArray:
-        """[num_envs]"""
+        """[num_envs] reward of the last step, summed over its control steps."""
         return self._rows["reward"]
 
     @property
     def cost(self) -> FloatArray:
-        """[num_envs][cost_dim] not below 0; column 0 is the task's own cost."""
+        """[num_envs][cost_dim] costs of the last step, not below 0, summed over its control steps; column 0 is the task's own."""
         return self._rows["cost"]
 
     @property

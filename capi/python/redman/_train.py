@@ -117,15 +117,22 @@ def train(task: Any = None, algo: Any = "ppo_lag", steps: Optional[float] = None
         run = redman.train(resume="runs/first", steps=2e6)
         runs = redman.train(["grasp", "jenga"], seed=range(5), out="runs")          # a list of ten runs
 
-    task: a name, an id of its environments (redman/BallRun-v0), a .task file, or a class of your own (redman.Task). options: those of the task and
-    of the algorithm, as a dict or as arguments. steps: control steps of all worlds together, rounded up to whole epochs (a
-    line on stderr says so); None: 1e6. threads: None uses all cores that this process may use; the bytes are the same for
-    any number. time_budget: seconds after which the present epoch is the last one. The first Ctrl-C ends the run after its
-    epoch and returns what has been learned; the second ends it at once.
+    It returns a redman.Run: the best policy, the curve and the learner. A wrong argument raises an error before anything is
+    learned or written.
+
+    task: a name (redman.tasks()), an id of its environments (redman/BallRun-v0), a .task file, or a class of your own (redman.Task).
+    algo: the name of a learner (redman.algos()). steps: control steps of all worlds together, 1 to 2^53, rounded up to whole
+    epochs (a line on stderr says so); None: 1e6. seed: 0 to 2^64 - 1. envs: worlds that are stepped side by side, 1 or more;
+    another number gives another run. threads: None uses all cores that this process may use; the bytes are the same for any
+    number. options: those of the task and of the algorithm, as a dict or as arguments; redman.task(name).options and
+    redman.algo(name).options have them with their bounds.
+
+    time_budget: seconds after which the present epoch is the last one; None: no bound. progress: shows a line for the present
+    epoch on stderr. The first Ctrl-C ends the run after its epoch and returns what has been learned; the second ends it at once.
 
     cost_limits: limits on the sum of each cost over an episode: a number for the first cost, a list with one for each, or a
-    dict by name; None: those of the task. Every eval_every epochs the policy is evaluated on twenty episodes, and on eighty
-    more if these look good, to decide which policy is kept: the best within the limits, else the one nearest to them.
+    dict by name; None: those of the task. Every eval_every epochs, 1 or more, the policy is evaluated on twenty episodes, and
+    on eighty more if these look good, to decide which policy is kept: the best within the limits, else the one nearest to them.
 
     reward, costs: functions of your own that replace the task's reward and costs. Each takes a redman.Rows, which has the
     rows of all worlds after a control step, and returns one number or flag for each world.
@@ -134,8 +141,8 @@ def train(task: Any = None, algo: Any = "ppo_lag", steps: Optional[float] = None
 
     costs is a dict by name, or a function or a list of them, which go by their own names. In a dict, the name of a cost of the
     task instead of a function keeps that cost. The limits, the choice of the policy, run.evaluate and the curve then refer to
-    these functions. evaluate(folder) and resume import the functions
-    of a module, and the class of a task, by their import paths; lambdas must be given again.
+    these functions. evaluate(folder) and resume import the functions of a module, and the class of a task, by their import
+    paths; lambdas must be given again.
 
     out: a run folder to write, which `redman eval`, `plot`, `report` and `train --resume` can read, with the curve for
     TensorBoard (tensorboard=False leaves it out). overwrite: replaces a run that is there. checkpoint_every: epochs from one
@@ -146,16 +153,22 @@ def train(task: Any = None, algo: Any = "ppo_lag", steps: Optional[float] = None
 
     from_: where the policy starts. A policy, its file or run folder, or "trained" gives the network; options of the task
     that its run had are used unless others are given. A recording or its file (.npz) is imitated first, and so is a script
-    of demonstrations: "demo" for the task's own, or a .demo file. teach: a dict of success_only (False), clone_epochs (20),
-    clone_patience (0), clone_rate (1e-3), validation (0.1), and start_share, the share of episodes that begin at a state of
-    the recording: a number, or a pair for the begin and the end of the run. Of teachers that act: decisions (640 in each
-    world), noise (0.05), dagger (0 rounds in which the policy acts and the teacher labels; the teacher may then be a policy),
-    beta (0.5), and for an encoder pretrain (0 clouds) and pretrain_epochs (10). These need the command redman, which does
-    the teaching and the first epoch.
+    of demonstrations: "demo" for the task's own, or a .demo file. Algorithms with a replay memory (td3, sac and what is made
+    of them) cannot begin with a teacher.
+
+    teach: how the teacher is imitated, a dict. success_only (False): leaves out episodes without success. clone_epochs (20):
+    passes over the rows. clone_patience (0): ends after this many epochs without a better validation loss; 0: never.
+    clone_rate (1e-3): the learning rate. validation (0.1): the share of rows that is held back. start_share (0): the share of
+    episodes that begin at a state of the recording, 0 to 1, or a pair for the begin and the end of the run. Of teachers that
+    act: decisions (640): how many are recorded in each world. noise (0.05): mean standard deviation of what is added to their
+    actions. dagger (0): rounds in which the policy acts and the teacher labels; the teacher may then be a policy. beta (0.5):
+    the teacher takes a share beta^k of the decisions of round k. pretrain (0): clouds of points that an encoder learns from
+    first; pretrain_epochs (10): passes over them. Teachers that act need the command redman, which does the teaching and the
+    first epoch.
 
     callback: a function of the epoch or of (epoch, training), an object of redman.callbacks, or a list of these. A true
     result ends the run; training.set(...) changes options. shield: a redman.Shield checks every decision; True, a dict of
-    its options, or "project". ranks: this process is one of several that learn as one (redman.Ranks): each of them calls
+    its options, "predict" (as True) or "project". ranks: this process is one of several that learn as one (redman.Ranks): each of them calls
     train with the same arguments, envs is the number of worlds of all, and the first rank writes and evaluates. view: a
     window in the browser shows the policy as it is after each epoch (redman.callbacks.View).
 

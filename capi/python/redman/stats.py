@@ -47,7 +47,7 @@ def iqm(scores: Scores) -> float:
         IQM = 1 / (n - 2 c)  sum x_(i), i = c + 1 ... n - c,  c = floor(n / 4)
 
     Unlike the mean, it is not affected by a few outliers, and it uses half of the scores, where a median uses one or two
-    (Agarwal et al. 2021, section 4.3).
+    (Agarwal et al. 2021, section 4.3). scores: a list of runs' scores, or {task: list}; ArgumentError for one that is not finite.
     """
     return float(iqm_of(np.concatenate(list(_by_task(scores).values()))[None])[0])
 
@@ -57,7 +57,8 @@ def interval(scores_by_task: Scores, level: float = 0.95) -> tuple[float, float]
     quantiles (1 - level) / 2 and (1 + level) / 2 of the resamples' interquartile means are its ends (stratified bootstrap,
     Agarwal et al. 2021, section 4.1).
 
-    Each task needs 2 runs or more. With fewer than about 5 runs of few tasks the interval is too narrow.
+    Each task needs 2 runs or more. With fewer than about 5 runs of few tasks the interval is too narrow. scores_by_task: as scores of
+    iqm(). level: the share of such intervals that contain the true value, between 0 and 1.
     """
     tasks = _of_several(scores_by_task, "scores_by_task")
 
