@@ -174,11 +174,12 @@ def compare(*runs: Any, episodes: Optional[int] = None) -> Comparison:
         redman.compare({"small": ["runs/a0", "runs/a1"], "large": ["runs/b0", "runs/b1"]})
 
     Runs that differ in their seeds alone are a row, named after their algorithm and, where it has several rows, what distinguishes
-    them ("ppo: shield predict"); a dict gives the rows names of your own. A run that is given twice counts once. The policy of each run plays 100 new episodes, or as
-    many as `episodes`, 1 or more, says.
+    them ("ppo: shield predict"); a dict gives the rows names of your own. A run that is given twice counts once. The tool's
+    `redman report` makes a page of run folders, with all algorithms and tasks.
 
-    runs: each a redman.Run, a run folder, a folder that contains some, a list of these, or a dict of these by name. Returns a
-    Comparison. UsageError for anything else and where there is no run, MissingFileError for a folder that is not there. The tool's `redman report` makes a page of run folders, with all algorithms and tasks.
+    runs: each a redman.Run, a run folder, a folder that contains some, a list of these, or a dict of these by name. episodes: how
+    many new episodes the policy of each run plays, 1 or more; None: 100. Returns a Comparison. UsageError for anything else and
+    where there is no run, MissingFileError for a folder that is not there.
     """
     named: dict[str, list[Run]] = {}
     loose: list[Run] = []  # without a name of the caller's

@@ -156,8 +156,10 @@ def settings_of(config: Mapping[str, Any]) -> dict[str, str]:
 
 
 def curve(*folders: Union[str, os.PathLike[str]], each: bool = False) -> Union[Curve, Curves]:
-    """The curve of a run folder, a Curve, or those of several in one picture, Curves: runs that differ in their seeds alone as a mean with a band, or,
-    with each=True, a line for each. A folder that is given twice, also by another path, is drawn once.
+    """The curve of a run folder, a Curve, or those of several in one picture, Curves.
+
+    Runs that differ in their seeds alone are a mean with a band, or, with each=True, a line for each. A folder that is given twice,
+    also by another path, is drawn once.
 
         redman.curve("runs/first").save("curve.svg")
         redman.curve("runs/seed-0", "runs/seed-1")
