@@ -29,6 +29,15 @@ check 'decisions are not those of the policy' less "$(number decisions shielded)
 check 'no decisions' less 1000 "$(number decisions shielded)"
 check 'a shield is told of without one' sh -c '! grep -q interventions bare'
 
+# where no clean way is found what violates is told apart, of every world and every control step
+for flags in '' '--set action_repeat=3'; do
+  # shellcheck disable=SC2086
+  "$tool" eval --task ball_run --policy random --episodes 16 --shield predict:rounds=1,look=1 $flags --json > unproven || exit 1
+  check "nothing is inevitable $flags" less 0 "$(number inevitable_steps unproven)"
+  check "it is not all that violates $flags" test "$(number inevitable_steps unproven)" = "$(number violating_steps unproven)"
+done
+check 'what is clean has inevitable steps' test "$(number inevitable_steps shielded)" = 0
+
 # guards alone: what is commanded
 "$tool" eval --task hand_over_safe_finger --set cost_mode=command --policy random --episodes 4 --shield project --json > projected || exit 1
 check 'a guard was broken' test "$(number violating_steps projected)" = 0

@@ -291,6 +291,15 @@ void Actor::act(redman::Pool& pool, const uint8_t* mask, const std::function<voi
   if (shielded_) shielded_->act(pool, mask);
 }
 
+void Actor::step(redman::Pool& pool, const uint8_t* mask) {
+  if (shielded_)
+    shielded_->step(pool, mask);
+  else if (mask)
+    pool.step(mask);
+  else
+    pool.step();
+}
+
 void Actor::propose(redman::Pool& pool, const uint8_t* mask) {
   if (demo_) return demo_->act(pool, mask);
   if (recording_) return replay(pool, mask);

@@ -65,6 +65,8 @@ class Actor {
   // Fills the action rows of the worlds in the mask. A policy decides every action_repeat control steps of
   // its own, whatever the pool's step is. `change` may lay other rows over its own, before the shield looks at them.
   void act(redman::Pool& pool, const uint8_t* mask = nullptr, const std::function<void()>& change = {});
+  // Steps the worlds in the mask by these rows; the shield counts what it could not prevent.
+  void step(redman::Pool& pool, const uint8_t* mask = nullptr);
   // Failure when an episode of a recording did not end where it ended when it was recorded.
   void check_ends() const;
   const PlanningCost& planning() const { return planning_; }

@@ -54,7 +54,7 @@ std::vector<Episode> play_episodes(redman::Pool& pool, Actor& actor, size_t coun
     actor.act(pool, playing.data());
     for (size_t i = 0; before && i < n; ++i)
       if (playing[i]) before(i, episode[i]);
-    pool.step(playing.data());
+    actor.step(pool, playing.data());
     for (size_t i = 0; i < n; ++i) {
       ended[i] = 0;
       if (!playing[i]) continue;

@@ -42,7 +42,7 @@ Scene::Scene(const PoolSettings& settings, const ActorChoice& choice, SceneView 
 bool Scene::advance() {
   if (pool_.terminated()[0] || pool_.truncated()[0]) return false;
   actor_.act(pool_);
-  pool_.step();
+  actor_.step(pool_);
   ++step_;
   intervened_ |= stepped_in();
   return true;

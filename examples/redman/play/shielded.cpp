@@ -18,21 +18,24 @@ rdm_shield_config config_of(const ShieldWord& word, const redman::Pool& pool, co
 
 }  // namespace
 
-ShieldCounts counts_of(const redman::Shield& shield) {
-  const rdm_shield_stats s = shield.stats();
-  return {s.decisions, s.changed + s.planned + s.projected + s.unproven, s.unproven};
+ShieldCounts Shielded::counts() const {
+  const rdm_shield_stats s = shield_.stats();
+  return {s.decisions, s.changed + s.planned + s.projected + s.unproven, s.unproven, inevitable_};
 }
 
 void put_shield(Json& json, const ShieldCounts& c) {
   json["decisions"] = c.decisions;
   json["interventions"] = c.interventions;
   json["unproven"] = c.unproven;
+  json["inevitable_steps"] = c.inevitable;
 }
 
 std::string shield_text(const ShieldCounts& c) {
-  return format("shield: it intervened in %lld of %lld decisions; in %lld of them no clean way was found\n",
-                static_cast<long long>(c.interventions), static_cast<long long>(c.decisions),
-                static_cast<long long>(c.unproven));
+  return format(
+      "shield: it intervened in %lld of %lld decisions; in %lld of them no clean way was found, which made "
+      "%lld violating steps inevitable\n",
+      static_cast<long long>(c.interventions), static_cast<long long>(c.decisions),
+      static_cast<long long>(c.unproven), static_cast<long long>(c.inevitable));
 }
 
 redman::Shield make_shield(const ShieldWord& word, const std::string& under, rdm_shield_config config) {
@@ -57,7 +60,9 @@ Shielded::Shielded(const ShieldWord& word, const std::string& of_run, const redm
           make_shield(word, "choose=best\nunproven=least\n" + of_run, config_of(word, pool, policy, seed))),
       left_(pool.num_envs()),
       due_(pool.num_envs()),
-      decided_(pool.num_envs() * pool.action().width()) {
+      decided_(pool.num_envs() * pool.action().width()),
+      kinds_(pool.num_envs()),
+      step_(pool.num_envs()) {
   if (policy) steps_ = policy->info().action_repeat / pool.spec().action_repeat;
 }
 
@@ -78,6 +83,19 @@ void Shielded::act(redman::Pool& pool, const uint8_t* mask) {
     if (mask && !mask[i]) continue;
     std::copy_n(decided_.data() + i * width, width, pool.action()[i].begin());
     left_[i] = (due_[i] ? steps_ : left_[i]) - 1;
+  }
+}
+
+// Worlds of unproven decisions first and alone, for a pool counts the violations of all worlds in one number.
+void Shielded::step(redman::Pool& pool, const uint8_t* mask) {
+  shield_.kinds(kinds_.data());
+  for (const bool unproven : {true, false}) {
+    for (size_t i = 0; i < step_.size(); ++i)
+      step_[i] = (!mask || mask[i]) && (kinds_[i] == RDM_SHIELD_UNPROVEN) == unproven;
+    if (std::find(step_.begin(), step_.end(), 1) == step_.end()) continue;
+    const int64_t before = unproven ? pool.stats().violations : 0;
+    pool.step(step_.data());
+    if (unproven) inevitable_ += pool.stats().violations - before;
   }
 }
 

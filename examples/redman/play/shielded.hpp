@@ -15,9 +15,9 @@ struct ShieldCounts {
   int64_t decisions = 0;
   int64_t interventions =
       0;  // decisions in which another action ran than was proposed, or none is known to be clean
-  int64_t unproven = 0;  // of these, the latter
+  int64_t unproven = 0;    // of these, the latter
+  int64_t inevitable = 0;  // control steps of these that violated
 };
-ShieldCounts counts_of(const redman::Shield& shield);
 // The keys that every command has, and a line of text.
 void put_shield(Json& json, const ShieldCounts& counts);
 std::string shield_text(const ShieldCounts& counts);
@@ -38,9 +38,11 @@ class Shielded {
   // The pool's rows of actions are what is proposed; those of worlds in the mask become what is to run. Where no decision is
   // due that is what was decided.
   void act(redman::Pool& pool, const uint8_t* mask);
+  // Steps the worlds in the mask.
+  void step(redman::Pool& pool, const uint8_t* mask);
   // In the last decision of world env.
   bool stepped_in(const redman::Pool& pool, int32_t env) const;
-  ShieldCounts counts() const { return counts_of(shield_); }
+  ShieldCounts counts() const;
 
  private:
   redman::Shield shield_;
@@ -48,6 +50,9 @@ class Shielded {
   std::vector<int32_t> left_;   // [num_envs] of these; 0: a decision is due
   std::vector<uint8_t> due_;    // [num_envs]
   std::vector<float> decided_;  // [num_envs][action_dim]
+  std::vector<int32_t> kinds_;  // [num_envs] of the last decisions, RDM_SHIELD_*
+  std::vector<uint8_t> step_;   // [num_envs] worlds to step
+  int64_t inevitable_ = 0;
 };
 
 }  // namespace tool
