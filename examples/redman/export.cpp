@@ -5,6 +5,7 @@
 
 #include "commands.hpp"
 #include "common/files.hpp"
+#include "common/names.hpp"
 #include "common/numbers.hpp"
 #include "common/presets.hpp"
 #include "common/text.hpp"
@@ -83,18 +84,6 @@ Json probe_json(const redman::Policy& policy, const Network& network, const Acto
   if (eyes.classes) json["point_class"] = std::move(clouds.classes);
   if (eyes.color) json["point_color"] = std::move(clouds.colors);
   return json;
-}
-
-// What the observation is made of, as the policy's task has it with the options of its run; empty when that
-// is not the layout that the policy knows.
-std::vector<rdm_field_info> fields_of(const std::optional<redman::Pool>& pool) {
-  std::vector<rdm_field_info> fields;
-  rdm_field_info f = RDM_INIT(rdm_field_info);
-  for (int32_t i = 0; pool && i < pool->spec().num_fields; ++i) {
-    redman::check(rdm_pool_field_at(pool->get(), i, &f));
-    fields.push_back(f);
-  }
-  return fields;
 }
 
 std::vector<ObsField> seen_fields(const std::vector<rdm_field_info>& fields,
@@ -181,7 +170,7 @@ Report run_export(const ExportFlags& flags) {
   }
   Network network(policy);
   const auto world = world_of(policy, choice, 0);  // lends the names of its fields
-  const std::vector<rdm_field_info> fields = fields_of(world);
+  const auto fields = world ? fields_of(*world) : std::vector<rdm_field_info>();
   const std::vector<int32_t> columns = policy_columns(policy.get());
   const ActionBounds bounds = shield.on ? bounds_of(world) : ActionBounds();
   if (const std::string preset = preset_of(network.obs_dim, fields, columns); !preset.empty())

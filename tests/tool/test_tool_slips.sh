@@ -122,6 +122,8 @@ grep -q 'of grasp: return' out || say 'the task is not named'
 wrong 2 'nearest is joint.bh_j11_joint.kp' eval --task grasp --set hand=barrett --set joint.bh_j11_jint.kp=20 --policy zero
 if "$tool" robot barrett_bh282 --name other --out other.robot > /dev/null 2>&1; then
   told 'nothing uses robot other; give --set hand=other' eval --task grasp --robot other.robot --policy zero --episodes 1
+  told 'nothing uses robot other' tasks grasp --robot other.robot
+  silent 'nothing uses' tasks grasp --robot other.robot --set hand=other
   silent 'nothing uses' eval --task grasp --robot other.robot --set hand=other --policy zero --episodes 1
 fi
 

@@ -89,6 +89,14 @@ for row in 'object.position .* state' 'goal.position .* state vision' 'right.ff_
   'right.joint_position .* state vision touch proprioception'; do
   grep -q "^$row *$" out || { echo "tasks grasp has no row '$row'"; failed=1; }
 done
+# The layout of other robots, before anything is trained.
+"$tool" tasks grasp --set hand=allegro --set arm=ur5e > out || failed=1
+for row in '188 observations, 22 actions' 'right.arm_position .* 0 ' '0 *right_shoulder_pan_joint' '21 *right_thj3'; do
+  grep -q "^$row" out || { echo "tasks grasp of other robots has no row '$row'"; failed=1; }
+done
+expect 2 'has no option hnd; nearest is hand' tasks grasp --set hnd=allegro
+expect 2 'name the task' tasks --set hand=allegro
+json 'action_order joints obs_dim' tasks grasp --set hand=allegro
 json 'algos name summary params key default low high help' algos
 json 'version abi ode eigen ccd octomap precision compiler' info
 json 'run policy env_steps wall_seconds steps_per_second return cost cost_stderr success_rate cost_limit feasible fall_rate length' \

@@ -107,17 +107,6 @@ std::string bare_joint(const std::string& name) {
   return name;
 }
 
-using Motors = std::map<int32_t, rdm_joint_info>;  // by entry of the action
-Motors motors_of(const redman::Pool& pool) {
-  Motors m;
-  for (int32_t i = 0; i < pool.spec().num_joints; ++i) {
-    auto joint = redman::sized<rdm_joint_info>();
-    redman::check(rdm_pool_joint_at(pool.get(), i, &joint));
-    if (joint.action >= 0) m[joint.action] = joint;
-  }
-  return m;
-}
-
 // Each word of the order is one entry; or a group, where "joints" are all that have a motor and what lies
 // between two of them is shared evenly.
 std::vector<int32_t> group_sizes(const std::vector<std::string>& words, const Motors& motors,

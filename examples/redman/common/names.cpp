@@ -114,8 +114,19 @@ std::vector<rdm_option> task_defaults(int32_t task) {
                              [&](int32_t i, rdm_option* out) { return rdm_task_default_at(task, i, out); });
 }
 
-std::vector<float> task_initial_mean(int32_t task) {
-  return redman::Pool(redman::pool_config(task_at(task).name)).initial_mean();
+std::vector<rdm_field_info> fields_of(const redman::Pool& pool) {
+  return collect<rdm_field_info>(pool.spec().num_fields, [&](int32_t i, rdm_field_info* out) {
+    return rdm_pool_field_at(pool.get(), i, out);
+  });
+}
+
+Motors motors_of(const redman::Pool& pool) {
+  Motors motors;
+  for (const rdm_joint_info& joint : collect<rdm_joint_info>(
+           pool.spec().num_joints,
+           [&](int32_t i, rdm_joint_info*out) { return rdm_pool_joint_at(pool.get(), i, out); }))
+    if (joint.action >= 0) motors[joint.action] = joint;
+  return motors;
 }
 
 std::vector<rdm_option_spec> task_options(int32_t task) {

@@ -2,6 +2,7 @@
 #pragma once
 #include <redman/redman.h>
 
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -10,6 +11,9 @@
 
 namespace CLI {
 class Validator;
+}
+namespace redman {
+class Pool;
 }
 
 namespace tool {
@@ -31,9 +35,13 @@ std::vector<rdm_field_info> task_fields(int32_t task);
 std::vector<rdm_cost_info> task_costs(int32_t task);
 // The task's own defaults of agent options, and the mean action of its new policies.
 std::vector<rdm_option> task_defaults(int32_t task);
-std::vector<float> task_initial_mean(int32_t task);
 std::vector<rdm_option_spec> task_options(int32_t task);
 std::vector<rdm_option_spec> algo_options(int32_t algo);
+// What the entries of a pool's rows are: of its observations, and the joints that entries of its actions move. The names are
+// the pool's.
+std::vector<rdm_field_info> fields_of(const redman::Pool& pool);
+using Motors = std::map<int32_t, rdm_joint_info>;  // by entry of the action
+Motors motors_of(const redman::Pool& pool);
 bool has_option(const std::vector<rdm_option_spec>& table, const std::string& key);
 
 // Versions and how the library was built.

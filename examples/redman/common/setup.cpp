@@ -205,8 +205,8 @@ PoolSettings counted(PoolSettings pool) {
   return pool;
 }
 
-void add_set_flag(CLI::App& command, std::vector<std::string>& sets) {
-  command
+CLI::Option* add_set_flag(CLI::App& command, std::vector<std::string>& sets) {
+  return command
       .add_option(
           "--set", sets,
           "option of the task or the algorithm (`redman tasks NAME`, `redman algos NAME`); repeatable")

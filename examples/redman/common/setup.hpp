@@ -67,7 +67,7 @@ CLI::Validator finite_to(double most);
 CLI::Option* add_task_flag(CLI::App& command, std::string& task, const char* names, const char* help);
 void add_envs_flag(CLI::App& command, PoolSettings& pool);
 CLI::Option* add_pool_flags(CLI::App& command, PoolSettings& pool, const char* task_help);
-void add_set_flag(CLI::App& command, std::vector<std::string>& sets);
+CLI::Option* add_set_flag(CLI::App& command, std::vector<std::string>& sets);
 void add_cost_limit_flag(CLI::App& command, std::vector<std::string>& limits);
 
 // Gives each "key=value" to the table that knows the key: the task's, or, when `agent` is not null, the
