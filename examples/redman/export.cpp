@@ -153,8 +153,11 @@ Report run_export(const ExportFlags& flags) {
                 ": a C file can only project; give --shield project without options");
   const ActorChoice choice = choose_actor(flags.policy);
   if (choice.file.empty() || choice.recording)
-    throw Usage("--policy " + flags.policy +
-                ": it is not a network; give a policy file, a run folder or trained:TASK");
+    throw Usage(
+        "--policy " + flags.policy +
+        ": it is not a network; give a policy file, a run folder or trained:TASK. To export what else "
+        "plays, record it (redman rollout --record FILE.npz) and learn from that (redman train --from "
+        "FILE.npz)");
   check_outputs({{"--rdm", flags.file, ".rdm"},
                  {"--onnx", flags.onnx, ".onnx"},
                  {"--safetensors", flags.safetensors, ".safetensors"},
@@ -211,7 +214,11 @@ Report run_export(const ExportFlags& flags) {
 void add_export(CLI::App& app, Run& run) {
   auto flags = std::make_shared<ExportFlags>();
   CLI::App* command = app.add_subcommand("export", "Write a policy as C source, ONNX or safetensors");
-  command->add_option("--policy", flags->policy, "policy file, run folder, or trained:TASK")->required();
+  command
+      ->add_option("--policy", flags->policy,
+                   "policy file, run folder, or trained:TASK: networks of all algorithms, with a memory, a "
+                   "latent, point clouds or groups too; not demonstrations, planners and baselines")
+      ->required();
   command
       ->add_option("--group", flags->group,
                    "group of a team's policy, such as left: its network alone, with its own actions")
