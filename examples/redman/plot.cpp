@@ -34,8 +34,8 @@ std::vector<Group> make_groups(const std::vector<const RunData*>& runs, bool eac
   std::vector<Group> groups;
   for (const Configuration& c : group_runs(runs)) {
     std::string label = c.label;
-    const bool said = label.find(": limit ") != label.npos || label.find(", limit ") != label.npos;
-    if (with_limit && !said && c.runs[0]->limit >= 0) label += ", limit " + number_text(c.runs[0]->limit);
+    if (with_limit && !c.limit_named && c.runs[0]->limit >= 0)
+      label += ", limit " + number_text(c.runs[0]->limit);
     if (!each) groups.push_back({label, c.runs, groups.size()});
     for (size_t i = 0; each && i < c.runs.size(); ++i)
       groups.push_back({label + ", seed " + std::to_string(c.runs[i]->seed), {c.runs[i]}, groups.size()});

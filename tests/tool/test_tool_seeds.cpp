@@ -15,6 +15,7 @@ using namespace tool;
 RunData run_of(const std::string& algo, double limit) {
   RunData run;
   run.algo = algo;
+  run.first_limit = "cost_limits.cost";
   run.config = {{"cost_limits.cost", number_text(limit)}, {"algo", algo}};
   run.columns = {{"TotalEnvSteps", {100}}};
   return run;

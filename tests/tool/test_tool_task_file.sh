@@ -29,6 +29,12 @@ run rollout --task "$here/../../examples/scenes/touch.task" --policy random --ep
 sed 's/^hand = "allegro"/hand = "own_hand"/; s/^name = "press_button"/name = "own_press"/; s/right\.ff/right.index/
 s/^start = .*//; s/^drive = .*//; s/^reach = .*//' press.task > own.task
 run train --robot own.robot --task own.task --steps 512 --envs 4 --set horizon=32 --set hidden=8 --set max_steps=20 --out run --no-tensorboard
+# A limit without a name is for column 0, whatever that is called, and is drawn as its limit.
+run train --robot own.robot --task own.task --steps 512 --envs 4 --set horizon=32 --set hidden=8 --set max_steps=20 --cost-limit 5 --out loose --no-tensorboard
+run plot run --out one.svg
+grep -q 'class="level"' one.svg || say "no limit is drawn"
+run plot run loose --out two.svg
+grep -q '>ppo_lag: limit 5<' two.svg || say "limits do not tell lines apart: $(grep -o '>ppo_lag[^<]*' two.svg)"
 rm -f own.task own.robot
 run eval --policy run --episodes 2 --json
 grep -q '"task":"own_press"' out || say "eval: $(cat out)"

@@ -35,12 +35,11 @@ std::string value_of(const FlatConfig& config, const std::string& key) {
   return found == config.end() ? "" : found->second;
 }
 
-// "learning_rate" of "algo_cfgs.learning_rate", "limit" of "cost_limits.cost", "drop limit" of
-// "cost_limits.drop".
-std::string short_key(const std::string& key) {
-  const std::string name = key.substr(key.find('.') + 1), limits = "cost_limits.";
-  if (key.compare(0, limits.size(), limits) != 0) return name;
-  return name == "cost" ? "limit" : name + " limit";
+// "learning_rate" of "algo_cfgs.learning_rate", "limit" of that of column 0, "drop limit" of "cost_limits.drop".
+std::string short_key(const std::string& key, const std::string& first_limit) {
+  if (key == first_limit) return "limit";
+  const std::string name = key.substr(key.find('.') + 1);
+  return key.starts_with("cost_limits.") ? name + " limit" : name;
 }
 
 }  // namespace
@@ -64,9 +63,10 @@ std::vector<CostOutcome> cost_columns_of(const RunData& run) {
     if (name.compare(0, head.size(), head) == 0) costs.push_back({name.substr(head.size()), -1, 0});
   }
   for (CostOutcome& c : costs) {
-    const std::string limit = value_of(run.config, "cost_limits." + c.name);
+    const bool first = &c == costs.data();
+    const std::string limit = value_of(run.config, first ? run.first_limit : "cost_limits." + c.name);
     if (!limit.empty()) c.limit = std::strtod(limit.c_str(), nullptr);
-    c.mean = tail_mean(run, column_of(c, &c == costs.data()));
+    c.mean = tail_mean(run, column_of(c, first));
   }
   return costs;
 }
@@ -130,11 +130,13 @@ std::vector<Configuration> group_runs(const std::vector<const RunData*>& runs) {
     for (const Configuration& other : out)
       if (other.runs[0]->algo == c.runs[0]->algo) rivals.push_back(other);
     c.label = c.runs[0]->algo;
+    const std::string& first_limit = c.runs[0]->first_limit;
     size_t named = 0;
     for (const Difference& d : differences(rivals)) {
       const std::string value = value_of(c.runs[0]->config, d.key);
-      if (!value.empty() && ++named <= kMostNamed)
-        c.label += (named == 1 ? ": " : ", ") + short_key(d.key) + ' ' + value;
+      if (value.empty() || ++named > kMostNamed) continue;
+      c.label += (named == 1 ? ": " : ", ") + short_key(d.key, first_limit) + ' ' + value;
+      c.limit_named |= d.key == first_limit;
     }
     if (named > kMostNamed) c.label += ", ...";
   }

@@ -40,7 +40,8 @@ Outcome training_outcome(const RunData& run);
 TrainingEnd training_end(const RunData& run);
 
 struct Configuration {
-  std::string label;  // algorithm, and what tells it from others of that algorithm
+  std::string label;         // algorithm, and what tells it from others of that algorithm
+  bool limit_named = false;  // the label has the limit on column 0
   std::vector<const RunData*> runs;
   std::vector<Outcome> outcomes;  // of the runs
   size_t color = 0;

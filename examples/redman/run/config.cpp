@@ -184,13 +184,9 @@ RunSettings parse_config(const char* text, size_t size) {
 
 RunLabel parse_label(const char* text, size_t size) {
   const Document json = parse_json(text, size);
-  RunLabel label{text_at(json, "task"), text_at(json, "algo"), seed_at(json, "seed"), -1};
   const Document& limits = object_at(json, "cost_limits");
-  const bool own =
-      json.contains("own_costs") && limits.size() == 1;  // else it is not known which is the first
-  const std::string first = own ? limits.begin().key() : "cost";
-  if (limits.contains(first)) label.limit = number_at(limits, first.c_str(), -kMostLimit, kMostLimit);
-  return label;
+  for (const auto& [name, limit] : limits.items()) number_at(limits, name.c_str(), -kMostLimit, kMostLimit);
+  return {text_at(json, "task"), text_at(json, "algo"), seed_at(json, "seed")};
 }
 
 FlatConfig parse_flat_config(const char* text, size_t size) {
@@ -203,7 +199,6 @@ FlatConfig parse_flat_config(const char* text, size_t size) {
                                            : value.is_number_float() ? number_text(value.get<double>())
                                                                      : value.dump();
   }
-  if (out.count("cost_limits.cost") > 0) out.erase("algo_cfgs.cost_limit");  // the same
   out.erase("train_cfgs.threads");
   out.erase("train_cfgs.tensorboard");
   out["task"] = text_at(json, "task");

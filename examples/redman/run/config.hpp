@@ -45,7 +45,6 @@ RunSettings parse_config(const char* text, size_t size);
 struct RunLabel {
   std::string task, algo;
   uint64_t seed = 0;
-  double limit = -1;  // of column 0, < 0: none
 };
 RunLabel parse_label(const char* text, size_t size);
 

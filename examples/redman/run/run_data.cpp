@@ -1,6 +1,7 @@
 #include "run/run_data.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <set>
 
@@ -45,6 +46,19 @@ std::vector<RunData> read_runs(const std::vector<std::string>& folders) {
   return runs;
 }
 
+namespace {
+
+// Of a task of one's own, or costs of one's own, column 0 may have any name: it is the limited one whose curve is without a
+// name. In the library's tasks it is called cost.
+std::string first_limit_of(const FlatConfig& config, const Columns& columns) {
+  const std::string limits = "cost_limits.";
+  for (auto at = config.lower_bound(limits); at != config.end() && at->first.starts_with(limits); ++at)
+    if (columns.count("Metrics/EpCost/" + at->first.substr(limits.size())) == 0) return at->first;
+  return limits + "cost";
+}
+
+}  // namespace
+
 RunData read_run(const std::string& path) {
   const std::string config = path + "/config.json", progress = path + "/progress.csv";
   const std::string label = read_file(config, kMostJsonBytes), rows = read_file(progress);
@@ -60,6 +74,11 @@ RunData read_run(const std::string& path) {
     run.columns = parse_progress(rows.data(), rows.size());
   } catch (const Failure& e) {
     throw Failure(progress + " is not a run's curve: " + e.what());
+  }
+  run.first_limit = first_limit_of(run.config, run.columns);
+  if (const auto limit = run.config.find(run.first_limit); limit != run.config.end()) {
+    run.limit = std::strtod(limit->second.c_str(), nullptr);
+    run.config.erase("algo_cfgs.cost_limit");  // the same
   }
   if (run.column("TotalEnvSteps").empty()) throw Failure(progress + " has no finished epoch yet");
   return run;

@@ -12,6 +12,8 @@ struct RunData : RunLabel {
   std::string path;
   FlatConfig config;
   Columns columns;                                                   // of progress.csv
+  std::string first_limit;                                           // key in config of that of cost column 0
+  double limit = -1;                                                 // its value, < 0: none
   const std::vector<double>& column(const std::string& name) const;  // empty when there is none
 };
 
