@@ -21,6 +21,7 @@
 #include "common/names.hpp"
 #include "common/numbers.hpp"
 #include "common/plugin.hpp"
+#include "common/setup.hpp"
 #include "common/text.hpp"
 
 namespace {
@@ -64,7 +65,7 @@ void print_result(const Report& report, bool json) {
 }
 
 int fail(const std::string& text, int status, bool json) {
-  std::string line = printable(text);
+  std::string line = printable(with_flags(text));
   std::replace(line.begin(), line.end(), '\n', ' ');
   std::fprintf(stderr, "redman: %s\n", line.c_str());
   if (json) std::printf("%s\n", json_text({{"error", line}, {"status", status}}).c_str());

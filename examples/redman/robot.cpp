@@ -4,6 +4,7 @@
 #include "commands.hpp"
 #include "common/files.hpp"
 #include "common/robots.hpp"
+#include "common/setup.hpp"
 #include "common/text.hpp"
 
 namespace tool {
@@ -91,7 +92,7 @@ Report report_robot(const RobotFlags& flags) {
       rdm_import_note note;
       if (rdm_import_note_at(import.get(), i, &note) != RDM_OK) throw Failure(rdm_import_error());
       if (note.kind != kind) continue;
-      const std::string line = note.line > 0 ? format("line %d: %s", note.line, note.text) : note.text;
+      const std::string line = (note.line > 0 ? format("line %d: ", note.line) : "") + with_flags(note.text);
       lists[kind].push_back(line);
       part += "  " + line + '\n';
     }

@@ -34,7 +34,7 @@ refused() { # refused TEXT ARGUMENTS...
   want=$1
   shift
   "$tool" "$@" --json > row 2> err && say "$* was not refused"
-  grep -qF "$want" err || say "$*: $(cat err)"
+  grep -qF -- "$want" err || say "$*: $(cat err)"
   grep -q '^{"error":' row || say "$* prints $(cat row)"
 }
 sed 's/<mass value="0.02"/<mass value="0"/' "$files/hand.urdf" > bad.urdf
@@ -43,12 +43,19 @@ refused 'shadow_hnd: there is no such file, and no robot of that name; nearest i
 sed 's/\.obj/.dae/' "$files/gripper.urdf" > far.urdf
 refused 'far.urdf: line 50: mesh: mesh package://gripper_description/meshes/pad.dae: it was not found' robot far.urdf
 "$tool" robot far.urdf --skip-meshes > out 2>&1 || say "--skip-meshes: $(cat out)"
-refused 'config.density: it is for URDF only' robot "$files/hand.xml" --density 1000
+refused '--density: it is for URDF only' robot "$files/hand.xml" --density 1000
 # Flags do with a robot of the list what they do with its file.
-refused 'config.density: it is for URDF and MJCF only' robot shadow_hand --density 1000
+refused '--density: it is for URDF and MJCF only' robot shadow_hand --density 1000
 "$tool" robot shadow_hand --name other --out other.robot > out 2>&1 || say "shadow_hand --name: $(cat out)"
 grep -q 'alias shadow was dropped: the robot is now called other$' out || say "shadow_hand --name: $(cat out)"
 "$tool" robots --robot other.robot | grep -q '^other ' || say "shadow_hand under another name"
+
+# What the library calls by members of a struct is said by the flag, notes included.
+printf '%s' '<robot name="two"><link name="a"/><link name="b"/></robot>' > two.urdf
+refused 'set --root to one of them' robot two.urdf
+refused '--palm: there is no link or site plam' robot "$files/hand.urdf" --palm plam
+"$tool" robot "$files/hand.urdf" --root index_proximal > out 2>&1 || say "--root: $(cat out)"
+grep -q 'is not below --root' out || say "what is not below --root is not said: $(cat out)"
 
 # A name that is taken: what the text says to do works.
 sed 's/"plain_hand"/"shadow_hand"/' "$files/hand.urdf" > twin.urdf

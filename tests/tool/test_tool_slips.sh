@@ -115,6 +115,11 @@ wrong 2 '--overwrite is for --out, which is missing' train $small --overwrite
 wrong 2 'it is not one of auto, urdf, mjcf, robot' robot x.urdf --format obj
 told '--policy demo: task ball_run has none' baseline --task ball_run --policy demo
 
+# What the library calls by its structs and functions is said by flags.
+wrong 2 '^redman: --threads: 300 is outside' rollout --threads 300
+wrong 1 'redman train --from gives one' bench update --set imitation=1 --samples 64 --seconds 0.1
+wrong 2 'set option episode_steps' bench update --set terminal_cost=1
+
 # Robots: their own joints can be set, and one that nothing uses is said.
 "$tool" eval --task grasp --set hand=barrett --set joint.bh_j11_joint.kp=20 --policy zero --episodes 1 > /dev/null || say 'a joint of another hand'
 "$tool" eval --task grasp --set arm=ur5e --set link.wrist_3_link.mass=2 --policy zero --episodes 1 > out || say 'a link of an arm'

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <regex>
 
 #include "common/json.hpp"
 #include "common/names.hpp"
@@ -46,14 +47,20 @@ void GivenOnce::add(const std::string& key, const std::string& where) {
   keys_.push_back(key);
 }
 
-std::string with_flag(const std::string& text) {
-  constexpr const char* kFlags[][2] = {{"num_envs:", "--envs:"},
-                                       {"num_threads:", "--threads:"},
-                                       {"obs_dim:", "--obs:"},
-                                       {"action_dim:", "--act:"},
-                                       {"cost_limits", "--cost-limit"}};
-  for (const auto& [member, flag] : kFlags)
-    if (text.rfind(member, 0) == 0) return flag + text.substr(std::string(member).size());
+std::string with_flags(std::string text) {
+  // a number follows where a flag is wrong: "obs_dim: the policy has 24, ..." is of no flag
+  static const std::pair<std::regex, const char*> kFlags[] = {
+      {std::regex("(^|: )num_envs: (?=-?\\d)"), "$1--envs: "},
+      {std::regex("(^|: )(config\\.)?num_threads: "), "$1--threads: "},
+      {std::regex("^obs_dim: (?=-?\\d)"), "--obs: "},
+      {std::regex("^action_dim: (?=-?\\d)"), "--act: "},
+      {std::regex("(^|: )cost_limits(?=\\[|: \\w+ needs)"), "$1--cost-limit"},
+      {std::regex("set config\\.max_steps or option"), "set option"},
+      {std::regex("config\\.fields is empty"), "there are none"},
+      {std::regex("call rdm_agent_set_recording first"), "redman train --from gives one"},
+      {std::regex("\\bconfig\\.slide_range\\b"), "--slide-range"},
+      {std::regex("\\bconfig\\.(density|flange|mount|name|packages|palm|policy|root|tips)\\b"), "--$1"}};
+  for (const auto& [member, flag] : kFlags) text = std::regex_replace(text, member, flag);
   return text;
 }
 

@@ -109,8 +109,8 @@ bool has_option(const std::string& algo, const char* wanted);
 // [cost_dim] limits: the task's own, with "40" (column 0) or "name=3" of each text laid over. < 0: none.
 std::vector<double> cost_limits(const redman::Pool& pool, const std::vector<std::string>& texts);
 
-// The library's text with the tool's flag where that names a member of its structs: "num_envs: 0 is outside ...".
-std::string with_flag(const std::string& text);
+// The library's text with the tool's flags where that names members of its structs, or its functions: "num_envs: 0 is outside ...".
+std::string with_flags(std::string text);
 // Calls f; a wrong argument, range or name becomes Usage.
 template <class F>
 auto as_usage(F&& f) {
@@ -120,7 +120,7 @@ auto as_usage(F&& f) {
     const rdm_result r = e.code();
     if (r == RDM_ERROR_ARGUMENT || r == RDM_ERROR_RANGE || r == RDM_ERROR_NOT_FOUND ||
         r == RDM_ERROR_UNSUPPORTED)
-      throw Usage(with_flag(e.what()));
+      throw Usage(e.what());
     throw;
   }
 }
