@@ -104,12 +104,12 @@ struct EvalFlags {
 };
 
 Report run_eval(EvalFlags flags) {
-  need_one_limit_each(flags.limits);
   ActorChoice choice = choose_actor(flags.policy, flags.pool.task);
   choice.shield = read_shield_word(flags.shield);
   if (flags.stochastic && (choice.baseline >= 0 || choice.demo || choice.plan || choice.recording))
     throw Usage("--stochastic: only a learned policy draws its actions; " + flags.policy + " does not");
   adopt_task(choice, flags.task_given, flags.sets, flags.pool);
+  need_one_limit_each(flags.pool.task, flags.limits);
   apply_sets(flags.sets, flags.pool, nullptr);
   choice.limits.insert(choice.limits.end(), flags.limits.begin(), flags.limits.end());
   say_worlds(flags.pool, flags.episodes);

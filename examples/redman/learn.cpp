@@ -64,9 +64,9 @@ std::string losses_text(const rdm_learn_report& report) {
 Report run_learn(LearnFlags flags) {
   check_outputs({{"--out", flags.out, ".rdm"}}, {{"--from", flags.from}});
   const int64_t steps = whole_number(flags.steps, "--steps");
-  take_limit_from_sets(flags.sets, flags.limits);
   const DataSet set = read_set(flags.from);
   adopt_set(set, flags);
+  take_limit_from_sets(flags.pool.task, flags.sets, flags.limits);
   if (has_option(flags.agent.algo, "replay_rows"))
     flags.agent.options.emplace_back("replay_rows", std::to_string(set.rows()));
   apply_sets(flags.sets, flags.pool, &flags.agent);

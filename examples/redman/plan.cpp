@@ -23,7 +23,6 @@ struct PlanFlags {
 };
 
 Report run_plan(PlanFlags flags) {
-  need_one_limit_each(flags.limits);
   check_outputs({{"--record", flags.record, kRecordEndings}});
   Options options;
   GivenOnce keys;
@@ -38,6 +37,7 @@ Report run_plan(PlanFlags flags) {
   ActorChoice choice = choose_actor(word, flags.pool.task);
   choice.shield = read_shield_word(flags.shield);
   adopt_task(choice, flags.task_given, flags.sets, flags.pool);
+  need_one_limit_each(flags.pool.task, flags.limits);
   apply_sets(flags.sets, flags.pool, nullptr, [](const std::string& key) {
     const std::string hint = planner_hint(key);
     return hint.empty() ? hint : hint + " of --plan";

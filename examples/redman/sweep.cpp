@@ -161,7 +161,7 @@ void try_settings(const SweepFlags& flags, const std::vector<Cell>& cells) {
     run.steps = whole_number(flags.steps, "--steps");
     std::vector<std::string> sets = c.sets;
     try {
-      take_limit_from_sets(sets, run.limits);
+      take_limit_from_sets(run.pool.task, sets, run.limits);
       apply_sets(sets, run.pool, &run.agent);
       Trainer(run).prepare();
     } catch (const std::exception& e) {

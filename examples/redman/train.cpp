@@ -88,11 +88,11 @@ Trainer begin_run(TrainFlags flags, const Ranks* ranks) {
   RunSettings& run = flags.run;
   const bool first = !ranks || ranks->first();
   check_outputs({{"--save-recording", run.save_recording, ".npz"}}, {{"--from", run.teach.from}});
-  take_limit_from_sets(flags.sets, run.limits);
   if (run.teach.asked()) {
     parse_shares(flags.start_share, run.teach);
     adopt_teacher(run.teach, flags.task_given, flags.sets, run.pool);
   }
+  take_limit_from_sets(run.pool.task, flags.sets, run.limits);
   const Options of_teacher = run.pool.options;
   const TeachSettings asked = run.teach;
   Options of_lesson;

@@ -215,10 +215,10 @@ Report run_view(ViewFlags flags) {
   check_viewer();
   check_replaceable(v.record);
   if (flags.record_given) check_outputs({{"--record", v.record, kRecordEndings}});
-  need_one_limit_each(v.limits);
   if (v.policies.empty()) v.policies = {"hold"};
   ActorChoice choice = choose_actor(v.policies.front(), v.pool.task);
   adopt_task(choice, flags.task_given, flags.sets, v.pool);
+  need_one_limit_each(v.pool.task, v.limits);
   apply_sets(flags.sets, v.pool, nullptr);
   v.history_bytes = history_bytes(flags);
   Session session(v);

@@ -50,6 +50,18 @@ expect() { # expect TEXT ARGUMENTS...: one line with the text
   grep -qF -- "$text" err || say "redman $*: '$(cat err)', expected '$text'"
   [ "$(wc -l < err)" -eq 1 ] || say "redman $*: more than one line: $(cat err)"
 }
+run eval --task press.task --policy zero --episodes 1 --set max_steps=5 --cost-limit 5 --json
+grep -q '"cost_limits":\[5.0\]' out || say "--cost-limit 5: $(cat out)"
+expect 'column touch has two limits, 3 and touch=4' eval --task press.task --cost-limit 3 --cost-limit touch=4
+expect 'both are the limit on column 0' train --task press.task --cost-limit touch=3 --set cost_limit=4 --out no
+sed 's/press_button/press_twice/; /^\[\[success/,$d' press.task > twice.task
+sed -n '/^\[\[cost/,/^$/p' press.task | sed 's/"touch"$/"cost"/; s/term = "cost"/term = "touch"/' >> twice.task
+run eval --task twice.task --policy zero --episodes 1 --set max_steps=5 --cost-limit 5 --cost-limit cost=6 --json
+grep -q '"cost_limits":\[5.0,6.0\]' out || say "another column called cost: $(cat out)"
+# What the task itself sets counts when an option is said to have no effect.
+sed 's/press_button/press_with_memory/; s/^horizon = 100/&\nmemory = "gru:4"/' press.task > memory.task
+run train --task memory.task --steps 64 --envs 2 --set horizon=16 --set hidden=8 --set memory_chunk=4 --set max_steps=20 --no-tensorboard --out memory
+grep -q 'no effect' err && say "the task's own memory is overlooked: $(cat err)"
 line=$(grep -n '^mass = "$cup_mass"' press.task | cut -d: -f1)
 sed 's/"$cup_mass"/"$cup_mas"/' press.task > bad.task
 expect "bad.task: line $line: body cup: mass: option cup_mas: unknown; nearest is cup_mass" train --task bad.task

@@ -105,37 +105,49 @@ void say_worlds(const PoolSettings& pool, int32_t episodes) {
                  episodes);
 }
 
-void take_limit_from_sets(std::vector<std::string>& sets, std::vector<std::string>& limits) {
+namespace {
+
+// The name of column 0, which a task of one's own may call as it likes; "": it has no costs.
+std::string name_of_first(const std::string& task) {
+  const std::vector<rdm_cost_info> costs = task_costs(find_task(task));
+  return costs.empty() ? "" : costs[0].name;
+}
+
+// The column that a text of --cost-limit names: one without a name is for column 0.
+std::string column_of_limit(const std::string& task, const std::string& text) {
+  const size_t sign = text.find('=');
+  return sign == text.npos ? name_of_first(task) : text.substr(0, sign);
+}
+
+}  // namespace
+
+void take_limit_from_sets(const std::string& task, std::vector<std::string>& sets,
+                          std::vector<std::string>& limits) {
   const auto is_limit = [](const std::string& s) {
     return same_name(s.substr(0, s.find('=')), "cost_limit") && s.find('=') != s.npos;
   };
   for (const std::string& s : sets) {
     if (!is_limit(s)) continue;
     for (const std::string& limit : limits)
-      if (limits_first(limit))
+      if (limits_first(task, limit))
         throw Usage("--cost-limit " + limit + " and --set " + s +
                     ": both are the limit on column 0; give one");
     limits.push_back(s.substr(s.find('=') + 1));
   }
   sets.erase(std::remove_if(sets.begin(), sets.end(), is_limit), sets.end());
-  need_one_limit_each(limits);
+  need_one_limit_each(task, limits);
 }
 
-std::string column_of_limit(const std::string& text) {
-  const size_t sign = text.find('=');
-  return sign == text.npos ? "cost" : text.substr(0, sign);
+bool limits_first(const std::string& task, const std::string& text) {
+  return same_name(column_of_limit(task, text), name_of_first(task));
 }
 
-bool limits_first(const std::string& text) {
-  return same_name(column_of_limit(text), "cost");
-}
-
-void need_one_limit_each(const std::vector<std::string>& limits) {
+void need_one_limit_each(const std::string& task, const std::vector<std::string>& limits) {
   for (size_t i = 0; i < limits.size(); ++i)
     for (size_t k = 0; k < i; ++k)
-      if (same_name(column_of_limit(limits[i]), column_of_limit(limits[k])))
-        throw Usage("--cost-limit: column " + column_of_limit(limits[i]) + " has two limits, " + limits[k] +
-                    " and " + limits[i]);
+      if (const std::string column = column_of_limit(task, limits[i]);
+          same_name(column, column_of_limit(task, limits[k])))
+        throw Usage("--cost-limit: column " + column + " has two limits, " + limits[k] + " and " + limits[i]);
 }
 
 int64_t whole_number(double value, const std::string& flag) {
@@ -152,7 +164,7 @@ void say_budget(const PoolSettings& pool, const std::vector<std::string>& limits
     if (same_name(key, "limit") || same_name(key, "limit_range")) return;
   }
   for (const std::string& text : limits) {
-    if (budget && limits_first(text))
+    if (budget && limits_first(pool.task, text))
       std::fprintf(
           stderr, "--cost-limit %s: option budget has a limit of its own, which stays; give --set limit=%s\n",
           text.c_str(), text.substr(text.find('=') + 1).c_str());
@@ -176,18 +188,33 @@ void give_eyes(int32_t points, int32_t repeat, const std::string& color, PoolSet
   pool.options.insert(pool.options.begin(), own.begin(), own.end());
 }
 
+namespace {
+
+Options defaults_of(const std::vector<rdm_option_spec>& table) {
+  Options values;
+  for (const rdm_option_spec& o : table) values.emplace_back(o.key, default_text(o));
+  return values;
+}
+
+// Of the algorithm's options in this task, a later one over an earlier one: the table's defaults, the task's own, those that
+// are given.
+Options agent_values(const AgentSettings& agent, const std::string& task) {
+  Options values = defaults_of(algo_options(find_algo(agent.algo)));
+  for (const rdm_option& o : task_defaults(find_task(task))) {
+    const std::string key = o.key;
+    const size_t colon = key.find(':');  // "sac:horizon" is for that algorithm alone
+    if (colon == key.npos || same_name(key.substr(0, colon), agent.algo))
+      values.emplace_back(key.substr(colon + 1), o.text ? o.text : number_text(o.number));
+  }
+  values.insert(values.end(), agent.options.begin(), agent.options.end());
+  return values;
+}
+
+}  // namespace
+
 void give_eyes(const AgentSettings& agent, PoolSettings& pool) {
-  const auto table = algo_options(find_algo(agent.algo));
-  const auto value = [&](const char* key) {
-    std::string out;
-    for (const rdm_option_spec& o : table)
-      if (same_name(o.key, key)) out = o.text ? o.text : number_text(o.number);
-    for (const rdm_option& o : task_defaults(find_task(pool.task)))
-      if (same_name(o.key, key)) out = o.text ? o.text : number_text(o.number);
-    for (const auto& [name, text] : agent.options)
-      if (same_name(name, key)) out = text;
-    return out;
-  };
+  const Options values = agent_values(agent, pool.task);
+  const auto value = [&](const char* key) { return option_of(values, key); };
   if (value("encoder").empty()) return;
   const auto whole = [&](const char* key) {
     return std::max(1, static_cast<int32_t>(std::strtol(value(key).c_str(), nullptr, 10)));
@@ -376,11 +403,12 @@ void refuse_flags(const std::vector<std::string>& sets, std::initializer_list<co
 
 namespace {
 
-// Options that do nothing unless another one has one of these words; "": any but its default.
+// Options that do nothing unless another one has one of these words; "": any but an empty one and 0.
 struct Belongs {
   const char *key, *to, *words;
 };
-constexpr const char *kImages = "rgb depth segmentation", *kClouds = "points voxels";
+constexpr const char *kImages = "rgb depth segmentation", *kClouds = "points voxels",
+                     *kSensors = "rgb depth segmentation points voxels", *kBudgets = "show saute simmer end";
 constexpr Belongs kOfTasks[] = {{"cameras", "modality", kImages},
                                 {"image_width", "modality", kImages},
                                 {"image_height", "modality", kImages},
@@ -396,8 +424,8 @@ constexpr Belongs kOfTasks[] = {{"cameras", "modality", kImages},
                                 {"point_color", "modality", "points"},
                                 {"voxels", "modality", "voxels"},
                                 {"voxel_size", "modality", "voxels"},
-                                {"sense_every", "modality", ""},
-                                {"budget_discount", "budget", ""},
+                                {"sense_every", "modality", kSensors},
+                                {"budget_discount", "budget", kBudgets},
                                 {"unsafe_reward", "budget", "saute simmer"},
                                 {"simmer_start", "budget", "simmer"},
                                 {"simmer_steps", "budget", "simmer"},
@@ -409,15 +437,10 @@ constexpr Belongs kOfAlgos[] = {{"encoder_activation", "encoder", ""}, {"encoder
                                 {"latent_fields", "latent", ""},       {"latent_hidden", "latent", ""},
                                 {"latent_from", "latent", ""}};
 
-void say_idle_of(const std::string& text, const Belongs& b, const std::vector<rdm_option_spec>& table,
-                 const Options& given) {
-  std::string off, value;
-  for (const rdm_option_spec& o : table)
-    if (same_name(o.key, b.to)) off = value = default_text(o);
-  for (const auto& [key, own] : given)
-    if (same_name(key, b.to)) value = own;
+void say_idle_of(const std::string& text, const Belongs& b, const Options& values) {
+  const std::string value = option_of(values, b.to);
   const std::vector<std::string> words = words_of(b.words, " "), parts = words_of(value, "+");
-  const bool works = words[0].empty() ? !same_name(value, off)
+  const bool works = words[0].empty() ? !value.empty() && value != "0"
                                       : std::any_of(parts.begin(), parts.end(), [&](const auto& part) {
                                           return std::any_of(words.begin(), words.end(), [&](const auto& w) {
                                             return same_name(w, part);
@@ -445,13 +468,15 @@ void say_idle(const std::vector<std::string>& sets, const PoolSettings& pool, co
       std::fprintf(stderr, "--robot %s: nothing uses robot %s; give --set hand=%s, or arm=%s\n",
                    printable(file).c_str(), info.name, info.name, info.name);
   }
+  Options of_task = defaults_of(task_options(find_task(pool.task)));
+  of_task.insert(of_task.end(), pool.options.begin(), pool.options.end());
+  const Options of_algo = agent ? agent_values(*agent, pool.task) : Options();
   for (const std::string& text : sets) {
     const std::string key = split_pair(text, "--set").first;
     for (const Belongs& b : kOfTasks)
-      if (same_name(key, b.key)) say_idle_of(text, b, task_options(find_task(pool.task)), pool.options);
+      if (same_name(key, b.key)) say_idle_of(text, b, of_task);
     for (const Belongs& b : kOfAlgos)
-      if (agent && same_name(key, b.key))
-        say_idle_of(text, b, algo_options(find_algo(agent->algo)), agent->options);
+      if (agent && same_name(key, b.key)) say_idle_of(text, b, of_algo);
   }
 }
 
@@ -501,6 +526,7 @@ std::vector<double> cost_limits(const redman::Pool& pool, const std::vector<std:
   const auto config = redman::agent_config(pool);
   std::vector<double> limits(config.cost_limits, config.cost_limits + costs.size());
   for (const std::string& text : texts) {
+    if (costs.empty()) throw Usage("--cost-limit " + text + ": the task has no costs");
     if (text.find('=') == std::string::npos) {
       limits[0] = limit_number(text, text);
       continue;

@@ -84,15 +84,14 @@ void say_idle(const std::vector<std::string>& sets, const PoolSettings& pool,
               const AgentSettings* agent = nullptr);
 // Says so where more worlds were asked for than there are episodes, of which each is played in one.
 void say_worlds(const PoolSettings& pool, int32_t episodes);
-// Moves the option cost_limit of an algorithm, the limit on column 0, from texts of --set to those of --cost-limit. Usage where
-// both give one.
-void take_limit_from_sets(std::vector<std::string>& sets, std::vector<std::string>& limits);
-// The column that a text of --cost-limit names; of one without a name "cost", as column 0 of the library's tasks is called.
-std::string column_of_limit(const std::string& text);
-// Whether it names column 0 so.
-bool limits_first(const std::string& text);
-// Usage where texts of --cost-limit give one column two.
-void need_one_limit_each(const std::vector<std::string>& limits);
+// Moves the option cost_limit of an algorithm, the limit on column 0 of the task, from texts of --set to those of --cost-limit.
+// Usage where both give one.
+void take_limit_from_sets(const std::string& task, std::vector<std::string>& sets,
+                          std::vector<std::string>& limits);
+// Whether a text of --cost-limit is for the task's column 0.
+bool limits_first(const std::string& task, const std::string& text);
+// Usage where texts of --cost-limit give one column of the task two.
+void need_one_limit_each(const std::string& task, const std::vector<std::string>& limits);
 // Of a flag that takes 1e6 too; Usage for a fraction and outside of 1 .. 2^53.
 int64_t whole_number(double value, const std::string& flag);
 // Says so where texts of --cost-limit leave the limit of option `budget` as it is.

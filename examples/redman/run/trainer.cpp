@@ -110,7 +110,7 @@ void Trainer::take_rate() {
   const double rate = std::strtod(agent_setting(agent_, settings_.agent.algo, key).c_str(), nullptr);
   if (rate < 0) return;
   for (const std::string& text : settings_.limits)
-    if (limits_first(text))
+    if (limits_first(settings_.pool.task, text))
       throw Usage("--cost-limit " + text + " and --set " + key + '=' + number_text(rate) +
                   ": both are limits on column 0; give one");
   limits_[0] = score_limits_[0] = rate * pool_.spec().max_steps;
