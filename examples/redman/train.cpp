@@ -101,6 +101,10 @@ Trainer begin_run(TrainFlags flags, const Ranks* ranks) {
   run.steps = whole_number(flags.steps, "--steps");
   run.shield = read_shield_word(flags.shield);
   if (run.teach.asked()) {
+    if (has_option(run.agent.algo, "replay_rows"))
+      throw Usage("--from: " + run.agent.algo +
+                  " cannot begin with a teacher; only algorithms without a replay memory can, such as "
+                  "--algo ppo_lag. `redman learn` lets it learn from a recording");
     const size_t given = run.agent.options.size();
     for (const Options& options :
          {adopt_lesson(flags.teach_given, run.pool, run.teach), taught_options(run.teach, run.agent.options)})

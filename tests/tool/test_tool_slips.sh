@@ -84,6 +84,7 @@ wrong 1 'taken' train --task grasp --from demo --out taken/run
 grep -q 'teacher:' err && say "the folder is tried after the teacher has played"
 
 # Beside --from: what does nothing is refused, what it sets is said.
+wrong 2 'td3 cannot begin with a teacher; .* --algo ppo_lag' train --task grasp --algo td3 --from demo --out no
 told "--from demo sets task hand_over_safe_finger; .* init_std=0.03 .*--set and flags override these" \
   train --from demo --envs 2 --steps 20 --set max_steps=10 --set horizon=10 --set hidden=8 --set minibatches=1 --set std_min=0.02 \
   --demo-decisions 4 --clone-epochs 1 --dagger 0 --save-recording shown.npz --out shown

@@ -121,10 +121,11 @@ std::vector<rdm_field_info> fields_of(const redman::Pool& pool) {
 }
 
 Motors motors_of(const redman::Pool& pool) {
+  const auto joints = collect<rdm_joint_info>(pool.spec().num_joints, [&](int32_t i, rdm_joint_info* out) {
+    return rdm_pool_joint_at(pool.get(), i, out);
+  });
   Motors motors;
-  for (const rdm_joint_info& joint : collect<rdm_joint_info>(
-           pool.spec().num_joints,
-           [&](int32_t i, rdm_joint_info*out) { return rdm_pool_joint_at(pool.get(), i, out); }))
+  for (const rdm_joint_info& joint : joints)
     if (joint.action >= 0) motors[joint.action] = joint;
   return motors;
 }
