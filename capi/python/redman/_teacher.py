@@ -202,11 +202,7 @@ def eyes_of(task: str, algo: str, of_algo: Mapping[str, Value]) -> list[tuple[st
     defaults = _discovery.task(task).defaults
 
     def value(key: str) -> str:
-        """As the command has it: a flag that was not given is a number."""
-        if key in of_algo:
-            return shown(key, of_algo[key])
-        usual = defaults.get(key, known[key].default)
-        return shown(key, int(usual) if isinstance(usual, bool) else usual)
+        return shown(key, of_algo[key] if key in of_algo else defaults.get(key, known[key].default))
 
     if not value("encoder"):
         return []
