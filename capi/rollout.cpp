@@ -158,10 +158,19 @@ class Shielded {
 
  private:
   bool refused(int32_t env) const { return shield_->row(env).kind != ShieldKind::kOwn; }
-  // What no plan avoids runs also where a refusal ends the episode: there is nothing to learn from it.
+  // What no plan avoids runs also where a refusal ends the episode: there is nothing to learn from it. So does a projected
+  // action: guards hold for entries of the action, and noise seldom keeps within all of them for a whole episode.
   bool ends(int32_t env) const {
-    const bool inevitable = shield_->row(env).kind == ShieldKind::kUnproven && !shield_->without_plan(env);
-    return how_ == ShieldLearn::kEnd && refused(env) && !inevitable;
+    if (how_ != ShieldLearn::kEnd) return false;
+    switch (shield_->row(env).kind) {
+      case ShieldKind::kOwn:
+      case ShieldKind::kProjected:
+        return false;
+      case ShieldKind::kUnproven:
+        return shield_->without_plan(env);
+      default:
+        return true;
+    }
   }
   // So far, of worlds whose decision at hand is unproven.
   int64_t unproven_violations() const {

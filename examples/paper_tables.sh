@@ -111,8 +111,7 @@ run_one() {  # a row
   shift 6
   # the paper's Table 1 fits costs of commanded targets alone: tasks/costs.md
   case $part in command) set -- "$@" --set cost_mode=command ;; shield) read -r -a more <<< "$(onward "$task" | xargs)" && set -- "$@" "${more[@]}" ;; esac
-  # a penalty teaches the network what the projection would do for it
-  case $algo in *+predict) set -- "$@" --shield predict ;; *+project) set -- "$@" --shield project --set shield_penalty=0.1 ;; esac
+  case $algo in *+predict) set -- "$@" --shield predict ;; *+project) set -- "$@" --shield project ;; esac
   if trained "$out/$name" --task "$task" --algo "${algo%%+*}" --seed "$seed" --steps "$n" --no-tensorboard "$@" &&
     sampled "$out/$name" "$seed" &&
     { [ "$part" != second ] || kept "$out/$name.mean.json" eval --policy "$out/$name" --episodes 100 --seed $((1000000 + seed)); }; then

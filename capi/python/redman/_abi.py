@@ -5751,8 +5751,9 @@ FUNCTIONS: dict[str, Function] = {
           applied  the action executed, with its density
           cost     as own, but the cost of column 0 is 1 for each refused decision; option cost_limit (1
                    by default) then limits the refusals in an episode
-          end      the episode ends before the action runs (a reward of 0, terminated), and the world
-                   begins another; where rewards are below 0 use shield_penalty, or ending is attractive
+          end      the episode ends before a refused action runs (a reward of 0, terminated), and the
+                   world begins another; where rewards are below 0 use shield_penalty, or ending is
+                   attractive. A projected action runs and is learned as own
 
         With each of them, shield_penalty is subtracted from the reward of refused decisions. To resume a
         run with the same bytes, save the state of the shield too, which holds its plans. STATE inside a
