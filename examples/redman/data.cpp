@@ -41,8 +41,10 @@ Report list_published() {
 }
 
 Report run_data_make(DataMakeFlags flags) {
-  if (flags.list) return list_published();
   MakeSettings& make = flags.make;
+  if (flags.list && !make.pool.task.empty())
+    throw Usage("--list lists all published sets; leave out " + printable(make.pool.task));
+  if (flags.list) return list_published();
   if (make.pool.task.empty()) throw Usage("data make: give a task, or the name of a published set (--list)");
   const Published* published = find_published(make.pool.task);
   const bool by_name = published && !same_name(make.pool.task, published->task);
@@ -154,8 +156,8 @@ void add_data_make(CLI::App& data, Run& run) {
   CLI::App* command =
       data.add_subcommand("make", "Make a data set: a mixture of policies on both sides of the cost limit");
   command->footer("redman data make hand_over_safe_finger --rows 1e5 --out set.npz");
-  command->add_option("task,--task", flags->make.pool.task,
-                      "task, by name or by its file (.task), or a published set's name");
+  add_task_flag(*command, flags->make.pool.task, "task,--task",
+                "task, by name or by its file (.task), or a published set's name");
   command->add_option("--rows", flags->rows, "number of rows at least; the last episode is whole")
       ->check(between(1.0, 1e9));
   command

@@ -114,14 +114,19 @@ Report run_eval(EvalFlags flags) {
   choice.limits.insert(choice.limits.end(), flags.limits.begin(), flags.limits.end());
   say_worlds(flags.pool, flags.episodes);
   say_budget(flags.pool, flags.limits);
+  std::optional<DataSet> set;
+  if (!flags.data.empty()) {
+    set = read_set(flags.data);
+    need_same_worlds(*set, flags.data, make_pool(flags.pool, RDM_AUTORESET_SAME_STEP).spec());
+  }
   const Evaluation e = evaluate(choice, flags.pool, choice.limits, flags.episodes, flags.stochastic);
   say_trouble(e.summary.trouble, "eval");
   say_idle(flags.sets, flags.pool);
   Json json = {{"policy", flags.policy}, {"task", task_at(find_task(flags.pool.task)).name}};
   json.update(evaluation_json(e, flags.episodes));
   std::string text = evaluation_text(e, flags.episodes);
-  if (!flags.data.empty()) {
-    json["score"] = score_json(read_set(flags.data), e);
+  if (set) {
+    json["score"] = score_json(*set, e);
     text += score_text(json["score"]);
   }
   return {json, text};

@@ -7,6 +7,7 @@
 #include "common/files.hpp"
 #include "common/names.hpp"
 #include "common/numbers.hpp"
+#include "common/setting.hpp"
 #include "common/setup.hpp"
 #include "common/text.hpp"
 #include "data/score.hpp"
@@ -72,8 +73,12 @@ Report run_learn(LearnFlags flags) {
   apply_sets(flags.sets, flags.pool, &flags.agent);
   flags.pool.envs = 1;
   redman::Pool pool = make_pool(flags.pool, RDM_AUTORESET_SAME_STEP);
-  flags.agent.options.insert(flags.agent.options.begin(),
-                             {"action_repeat", std::to_string(pool.spec().action_repeat)});
+  const std::string asked = option_of(flags.agent.options, "action_repeat"),
+                    repeat = std::to_string(pool.spec().action_repeat);
+  if (!asked.empty() && asked != repeat)
+    throw Usage("--set action_repeat=" + printable(asked) + ": a row of " + printable(flags.from) +
+                " lasts " + repeat + (repeat == "1" ? " control step" : " control steps"));
+  flags.agent.options.insert(flags.agent.options.begin(), {"action_repeat", repeat});
   const std::vector<double> limits = cost_limits(pool, flags.limits);
   redman::Agent agent = make_agent(flags.agent, pool, limits, flags.pool.seed, flags.pool.threads);
   const redman::Recording recording(flags.from.c_str());

@@ -180,9 +180,10 @@ void add_rollout(CLI::App& app, Run& run) {
   command->add_flag("--record-states", flags->states, "also record the state of the worlds before each step")
       ->needs(record);
   command
-      ->add_option(
-          "--noise", flags->noise,
-          "mean standard deviation of the noise on the actions; a record also has them without it, as label")
+      ->add_option("--noise", flags->noise,
+                   "mean standard deviation of the noise on the actions, which differs between worlds; of "
+                   "four or more worlds "
+                   "every fourth has none. A record also has the actions without it, as label")
       ->check(between(0.0, 10.0));
   add_shield_flag(*command, flags->shield);
   add_set_flag(*command, flags->sets);

@@ -15,9 +15,12 @@
 #include "common/files.hpp"
 #include "common/names.hpp"
 #include "common/numbers.hpp"
+#include "common/objects.hpp"
 #include "common/posix.hpp"
+#include "common/robots.hpp"
 #include "common/setup.hpp"
 #include "common/statistics.hpp"
+#include "common/task_files.hpp"
 #include "common/text.hpp"
 #include "run/trainer.hpp"
 #if !defined(_WIN32)
@@ -42,6 +45,7 @@ struct SweepFlags {
 // One run: what it is called in the report, and where it stands.
 struct Cell {
   std::string task, algo, variant, path;
+  std::string task_word;  // what `train` is told: the task's name or file
   uint64_t seed = 0;
   std::vector<std::string> sets;
   std::string result() const { return path + ".json"; }
@@ -115,11 +119,13 @@ std::string file_name(const std::string& text) {
 
 std::vector<Cell> runs_of(const SweepFlags& flags) {
   const auto tasks = list_of(flags.tasks), algos = list_of(flags.algos);
+  std::vector<std::string> names;  // of the tasks
+  for (const std::string& task : tasks) names.emplace_back(task_at(find_task(task)).name);
   const auto seeds = read_seeds(flags.seeds);
   const auto variants = variants_of(flags.varied);
   if (tasks.empty()) throw Usage("--tasks: there is none");
   if (algos.empty()) throw Usage("--algos: there is none");
-  need_once(tasks, "--tasks", flags.tasks);
+  need_once(names, "--tasks", flags.tasks);
   need_once(algos, "--algos", flags.algos);
   if (tasks.size() * algos.size() * variants.size() * seeds.size() > kMostRuns)
     throw Usage(format("these are more than %zu runs", kMostRuns));
@@ -129,6 +135,7 @@ std::vector<Cell> runs_of(const SweepFlags& flags) {
       for (const auto& variant : variants) {
         Cell c;
         c.task = task_at(find_task(task)).name;
+        c.task_word = is_task_file(task) ? task : c.task;
         c.algo = algo_at(find_algo(algo)).name;
         c.sets = flags.sets;
         for (const std::string& set : variant) {
@@ -184,12 +191,14 @@ Json result_of(const Cell& c) {
 
 // What a run of this path must have been begun with, as words of the command.
 std::vector<std::string> settings_of(const SweepFlags& flags, const Cell& c) {
-  std::vector<std::string> words = {"--task",  c.task,
+  std::vector<std::string> words = {"--task",  c.task_word,
                                     "--algo",  c.algo,
                                     "--steps", number_text(flags.steps),
                                     "--envs",  std::to_string(flags.envs)};
   for (const std::string& limit : flags.limits) words.insert(words.end(), {"--cost-limit", limit});
   for (const std::string& set : c.sets) words.insert(words.end(), {"--set", set});
+  for (const auto& [file, robot] : given_robots()) words.insert(words.end(), {"--robot", file});
+  for (const std::string& file : given_objects()) words.insert(words.end(), {"--object", file});
   return words;
 }
 
@@ -212,6 +221,7 @@ void need_same_settings(const SweepFlags& flags, const std::vector<Cell>& cells)
 
 std::vector<std::string> command_of(const SweepFlags& flags, const Cell& c) {
   std::vector<std::string> words = {path_of_program(), "train", "--json"};
+  for (const std::string& plugin : own_files(c.task).plugins) words.insert(words.end(), {"--plugin", plugin});
   const auto add = [&](const char* flag, const std::string& value) {
     words.push_back(flag);
     words.push_back(value);
@@ -414,7 +424,11 @@ void add_sweep(CLI::App& app, Run& run) {
   auto flags = std::make_shared<SweepFlags>();
   CLI::App* command = app.add_subcommand(
       "sweep", "Train tasks x algorithms x seeds x options, each a run of its own, and compare them");
-  command->add_option("--tasks,--task", flags->tasks, "tasks, separated by commas")->required();
+  add_robot_flag(*command);
+  add_object_flag(*command);
+  command
+      ->add_option("--tasks,--task", flags->tasks, "tasks, by name or by file (.task), separated by commas")
+      ->required();
   command->add_option("--algos,--algo", flags->algos, "algorithms, separated by commas");
   command->add_option("--seeds", flags->seeds, "seeds: a range such as 0..4, or a list such as 0,1,2");
   command->add_option(

@@ -130,6 +130,10 @@ Trainer begin_run(TrainFlags flags, const Ranks* ranks) {
   if (first) {
     if (run.teach.asked()) say_taken(flags, asked, of_teacher, of_lesson);
     say_idle(flags.sets, run.pool, &run.agent);
+    for (const std::string& set : flags.sets)
+      if (const std::string key = split_pair(set, "--set").first;
+          !run.shield.on && (same_name(key, "shield_learn") || same_name(key, "shield_penalty")))
+        std::fprintf(stderr, "--set %s: it has no effect without --shield\n", printable(set).c_str());
   }
   if (!first) {
     trainer.follow("");

@@ -104,6 +104,11 @@ wrong 1 'nearest is ball_run.npz' data info bal_run.npz
 wrong 2 'nearest is ball_run' data make bal_run
 wrong 2 'nearest is OfflineBallRun-v0' data make OfflineBalRun-v0
 wrong 2 'no set of task jenga' data make jenga --preset dsrl
+wrong 2 'leave out ball_run' data make ball_run --list
+"$tool" data make "$here/../../examples/scenes/press.task" --rows 50 --out press.npz | grep -q '^press_button: ' || { echo 'no set of a task file'; failed=1; }
+# A set of another task, or of other lengths, is no measure.
+wrong 2 'a set of task ball_run, not of car_run' eval --task car_run --policy trained --episodes 1 --data ball_run.npz
+wrong 2 'give --set max_steps=' eval --task ball_run --policy trained --episodes 1 --set max_steps=7 --data ball_run.npz
 wrong 2 'end in .npz' data make ball_run --out set.hdf5
 wrong 2 'are in every mixture' data make ball_run --policy random
 wrong 2 'rows' data make ball_run --rows 0

@@ -43,5 +43,6 @@ wrong 2 'nearest is td3_bc_lag' learn --from bandit.npz --algo td3_bc_la --out x
 wrong 2 'replay_rows: 100 has no place' learn --from bandit.npz --set replay_rows=100 --out x.rdm
 wrong 1 'nearest is bandit.npz' learn --from bandi.npz --out x.rdm
 wrong 2 'out' learn --from bandit.npz
+wrong 2 'action_repeat=3: a row of bandit.npz lasts 1 control step' learn --from bandit.npz --set action_repeat=3 --out x.rdm
 wrong 2 'steps' learn --from bandit.npz --steps 0 --out x.rdm
 exit $failed

@@ -39,6 +39,8 @@ hull='0.03,0,0;-0.03,0,0;0,0.03,0;0,-0.03,0;0,0,0.04;0,0,-0.04;0.01,0.01,0.03'
 replay hull --task hand_over_safe_finger --policy random --set object=hull --set "hull=$hull" --set max_steps=5 --episodes 2
 grep -q "\"file\":\"random.npz\",\"steps\":84" random.out || say "$(cat random.out)"
 # any number of worlds plays each episode as it was
+"$tool" rollout --task ball_run --policy hold --set max_steps=5 --json > still.out && "$tool" rollout --task ball_run --policy hold --set max_steps=5 --noise 0.3 --json > moved.out
+! cmp -s still.out moved.out || say "--noise adds nothing to one world"
 "$tool" rollout --policy random.npz --envs 1 --json > one.out || say "one world does not replay three"
 [ "$(value return_mean one.out)" = "$(value return_mean random.out)" ] || say "one world: $(cat one.out)"
 "$tool" rollout --policy random.npz --episodes 2 --json > two.out || say "two of seven episodes"

@@ -74,6 +74,13 @@ for clip in 0.1 0.3; do
   grep -q "\"clip\": *\"*$clip" "varied/bandit/ppo_lag+clip=$clip/seed-005/config.json" || { echo "no run with clip=$clip"; failed=1; }
 done
 
+# Files of the user's own reach each run.
+cp "$here/../../examples/scenes/press.task" . || exit 1
+"$tool" sweep --tasks press.task,bandit --algos ppo --seeds 0 --steps 500 --envs 4 --set hidden=8 --out own > table 2> err || { cat table err; failed=1; }
+[ -d own/press_button/ppo/seed-000 ] || { echo 'there is no run of the task file'; ls -R own; failed=1; }
+"$tool" sweep --tasks press.task,press_button --out wrong > /dev/null 2> err && { echo 'a task is swept twice'; failed=1; }
+grep -q 'one of them is given twice' err || { cat err; failed=1; }
+
 # The time is over at once: what has begun goes on to the same end.
 # shellcheck disable=SC2086
 "$tool" sweep $flags --out timed --minutes 0.001 > table 2> err || { cat err; failed=1; }

@@ -101,12 +101,23 @@ int32_t load_object_text(const std::string&, const std::string&) {
 }
 #endif
 
+namespace {
+std::vector<std::string> g_object_files;  // as the list of objects itself, of the process
+}  // namespace
+
+const std::vector<std::string>& given_objects() {
+  return g_object_files;
+}
+
 void add_object_flag(CLI::App& command) {
   command
       .add_option_function<std::vector<std::string>>(
           "--object",
           [](const std::vector<std::string>& files) {
-            for (const std::string& file : files) load_object(file);
+            for (const std::string& file : files) {
+              load_object(file);
+              g_object_files.push_back(file);
+            }
           },
           "file of an object (.object, written by redman object) for --set object=NAME; repeatable")
       ->allow_extra_args(false)

@@ -24,5 +24,6 @@ std::vector<std::string> object_names();
 
 // --object FILE, repeatable: loads them while the command line is read, before any task is made.
 void add_object_flag(CLI::App& command);
+const std::vector<std::string>& given_objects();  // the files that were given so
 
 }  // namespace tool

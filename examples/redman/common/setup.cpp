@@ -467,6 +467,9 @@ void say_idle(const std::vector<std::string>& sets, const PoolSettings& pool, co
     if (chooses && !used)
       std::fprintf(stderr, "--robot %s: nothing uses robot %s; give --set hand=%s, or arm=%s\n",
                    printable(file).c_str(), info.name, info.name, info.name);
+    else if (!chooses && own_files(pool.task).task.empty())
+      std::fprintf(stderr, "--robot %s: task %s takes no robot\n", printable(file).c_str(),
+                   printable(pool.task).c_str());
   }
   Options of_task = defaults_of(task_options(find_task(pool.task)));
   of_task.insert(of_task.end(), pool.options.begin(), pool.options.end());

@@ -1,9 +1,22 @@
 #include "data/score.hpp"
 
+#include "common/names.hpp"
 #include "common/text.hpp"
 #include "data/summary.hpp"
 
 namespace tool {
+
+void need_same_worlds(const DataSet& set, const std::string& file, const rdm_spec& spec) {
+  const std::string task = task_at(spec.task).name;
+  if (!set.task.empty() && !same_name(set.task, task))
+    throw Usage("--data " + printable(file) + ": it is a set of task " + printable(set.task) + ", not of " +
+                task);
+  const auto steps = set.metadata.find("max_steps");
+  if (steps != set.metadata.end() && steps->is_number_integer() && *steps != spec.max_steps)
+    throw Usage(format(
+        "--data %s: an episode of the set has at most %s control steps, and here %d; give --set max_steps=%s",
+        printable(file).c_str(), steps->dump().c_str(), spec.max_steps, steps->dump().c_str()));
+}
 
 Json score_json(const DataSet& set, const Evaluation& e) {
   const ReturnRange range = return_range(set);

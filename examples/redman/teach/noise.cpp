@@ -9,7 +9,7 @@ ActionNoise::ActionNoise(size_t worlds, size_t width, double mean, uint64_t seed
     : width_(width), counter_(scattered(seed)), noise_(worlds * width) {
   for (size_t i = 0; i < worlds; ++i) {
     const double u = uniform();
-    deviation_.push_back(i % 4 == 0 ? 0 : 2 * mean * u);
+    deviation_.push_back(worlds >= 4 && i % 4 == 0 ? 0 : 2 * mean * u);
   }
 }
 

@@ -10,7 +10,7 @@ namespace tool {
 // The same numbers for the same seed, on any machine.
 class ActionNoise {
  public:
-  // Every fourth world has none; the others' deviation is uniform up to twice the mean.
+  // The deviation of a world is uniform up to twice the mean; of four or more worlds every fourth has none.
   ActionNoise(size_t worlds, size_t width, double mean, uint64_t seed);
   // New noise for a world's decision.
   void draw(size_t world);
