@@ -67,7 +67,9 @@ struct Writer {
       for (int32_t k = 0; k < s.num_points; ++k) out += "  " + list(s.points + 3 * k, 3) + ",\n";
       out += "]\n";
     } else {
-      numbers("size", s.size, 3, kNone);
+      double size[3] = {};
+      std::copy_n(s.size, size_count(s.kind), size);
+      numbers("size", size, 3, kNone);
     }
     numbers("p", s.pose.p, 3, kNone);
     const bool none = s.pose.q[0] == 0 && s.pose.q[1] == 0 && s.pose.q[2] == 0 && s.pose.q[3] == 0;
@@ -85,6 +87,8 @@ struct ObjectReader {
     t.only({"kind", "size", "points", "p", "q", "color", "seen_only"});
     rdm_shape_def s{};
     s.kind = shape_kind(t, static_cast<int32_t>(std::size(kShapes)));
+    if (s.kind == RDM_SHAPE_PLANE)
+      t.bad(RDM_ERROR_ARGUMENT, line_of(t.need("kind")), "kind: an object cannot be a plane");
     s.pose.q[3] = 1;
     t.numbers("p", s.pose.p, 3);
     t.numbers("q", s.pose.q, 4);
@@ -101,10 +105,8 @@ struct ObjectReader {
         for (const double x : t.list(row, "a point", 3, 3)) points.push_back(x);
       s.points = points.data();
       s.num_points = static_cast<int32_t>(rows->size());
-    } else {
-      const auto size = t.list(t.need("size"), "size", 1, 3);
-      std::copy(size.begin(), size.end(), s.size);
     }
+    read_size(t, s.kind, s.size);
     out->shapes.push_back(s);
   }
 

@@ -251,7 +251,9 @@ struct Writer {
       refuse(RDM_ERROR_RANGE, "def.shapes: kind %d of %s cannot be part of a robot", s.kind,
              clean(s.name).c_str());
     line("kind", quoted(kind));
-    numbers("size", s.size, 3);
+    double size[3] = {};
+    std::copy_n(s.size, size_count(s.kind), size);
+    numbers("size", size, 3);
     numbers("p", s.pose.p, 3);
     turn("q", s.pose.q);
     line("color", format("[%d, %d, %d]", s.color[0], s.color[1], s.color[2]));
@@ -318,8 +320,7 @@ struct RobotReader {
       s.name = name(t, "name");
       s.link = link(t, "link", t.need("link"));
       s.kind = shape_kind(t, kRobotShapes);
-      const auto size = t.list(t.need("size"), "size", 1, 3);
-      std::copy(size.begin(), size.end(), s.size);
+      read_size(t, s.kind, s.size);
       s.pose.q[3] = 1;
       t.numbers("p", s.pose.p, 3);
       t.numbers("q", s.pose.q, 4);

@@ -279,10 +279,8 @@ void SceneText::read_shape(const Table& t, const std::string* name, Shapes* out)
       for (const double c : t.list(x, "points", 3, 3)) out->points.back().push_back(c);
     s.points = out->points.back().data();
     s.num_points = static_cast<int32_t>(out->points.back().size() / 3);
-  } else if (s.kind != RDM_SHAPE_PLANE) {
-    const auto size = t.list(t.need("size"), "size", 1, 3);
-    std::copy(size.begin(), size.end(), s.size);
   }
+  read_size(t, s.kind, s.size);
   s.pose.q[3] = 1;
   read_color(t, s.color);
   s.seen_only = t.flag("seen_only");

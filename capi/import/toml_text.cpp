@@ -194,6 +194,39 @@ int32_t shape_kind(const Table& t, int32_t count) {
   return kShapes[static_cast<size_t>(t.choice("kind", names, count, 0))].kind;
 }
 
+size_t size_count(int32_t kind) {
+  switch (kind) {
+    case RDM_SHAPE_SPHERE:
+      return 1;
+    case RDM_SHAPE_CAPSULE:
+    case RDM_SHAPE_CYLINDER:
+      return 2;
+    case RDM_SHAPE_BOX:
+    case RDM_SHAPE_ELLIPSOID:
+      return 3;
+    default:
+      return 0;
+  }
+}
+
+void read_size(const Table& t, int32_t kind, double size[3]) {
+  const bool hull = kind == RDM_SHAPE_HULL;
+  if (const toml::node* n = t.find("points"); n && !hull)
+    t.bad(RDM_ERROR_FORMAT, line_of(*n), "points: only a hull has points");
+  const size_t used = size_count(kind);
+  if (used == 0) {
+    if (const toml::node* n = t.find("size"))
+      t.bad(RDM_ERROR_FORMAT, line_of(*n), "size: a %s has none", hull ? "hull, which has points," : "plane");
+    return;
+  }
+  const toml::node& n = t.need("size");
+  const auto given = t.list(n, "size", 1, 3);
+  for (size_t i = used; i < given.size(); ++i)
+    if (given[i] != 0)
+      t.bad(RDM_ERROR_FORMAT, line_of(n), "size: this kind has %zu number%s", used, used == 1 ? "" : "s");
+  std::copy(given.begin(), given.end(), size);
+}
+
 bool read_color(const Table& t, uint8_t color[4]) {
   const toml::node* n = t.find("color");
   if (!n) return false;

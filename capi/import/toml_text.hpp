@@ -93,6 +93,9 @@ inline constexpr NamedKind kShapes[] = {
     {"hull", RDM_SHAPE_HULL}};
 inline constexpr int32_t kRobotShapes = 5;
 int32_t shape_kind(const Table& t, int32_t count);
+size_t size_count(int32_t kind);  // how many numbers of a shape's size count
+// [3] of "size"; 0 of a hull, which has points, and of a plane. What the kind has no use for is refused.
+void read_size(const Table& t, int32_t kind, double size[3]);
 // [3] of "color", each in [0, 255]; false: it is not there.
 bool read_color(const Table& t, uint8_t color[4]);
 

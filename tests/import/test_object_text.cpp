@@ -108,7 +108,8 @@ TEST(ObjectText, RefusalsNameTheLine) {
       // of the library, under the file's own name
       {RDM_ERROR_RANGE, "object brick: mass -1 is outside", "name = 'brick'\nmass = -1\n" + shape},
       {RDM_ERROR_ARGUMENT, "may contain only letters", "name = 'a brick'\nmass = 1\n" + shape},
-      {RDM_ERROR_ARGUMENT, "shapes[0]: kind 4", head + "[[shape]]\nkind = 'plane'\nsize = [1]\n"},
+      {RDM_ERROR_ARGUMENT, "kind: an object cannot be a plane",
+       head + "[[shape]]\nkind = 'plane'\nsize = [1]\n"},
       {RDM_ERROR_RANGE, "object brick: shapes[0]: size",
        head + "[[shape]]\nkind = 'box'\nsize = [1, 1, 0]\n"},
       {RDM_ERROR_ARGUMENT, "triangle inequality", head + "moment = [1, 1, 3, 0, 0, 0]\n" + shape},
