@@ -4,6 +4,7 @@ import json
 import multiprocessing
 import sys
 import tempfile
+import threading
 import traceback
 import unittest
 from pathlib import Path
@@ -233,6 +234,86 @@ class OwnTask(unittest.TestCase):
         other = redman.Pool(PushBall)
         other.reset()
         self.assertEqual(other.obs[0, 4], np.float32(0.2))
+
+    def test_each_function_raises_the_same_kind_of_error(self):
+        class Fails(Cart):
+            fault = ""
+
+            def at(self, name):
+                if Fails.fault == name:
+                    raise KeyError("no such thing")
+
+            def scene(self, s):
+                self.at("scene")
+                super().scene(s)
+
+            def reset(self, w):
+                self.at("reset")
+                super().reset(w)
+
+            def control(self, w, action):
+                self.at("control")
+                super().control(w, action)
+
+            def judge(self, w):
+                self.at("judge")
+                return super().judge(w)
+
+            def observe(self, w):
+                self.at("observe")
+                return super().observe(w)
+
+        pool = redman.Pool(Fails)
+        for name in ("scene", "reset", "control", "judge", "observe"):
+            Fails.fault = ""
+            pool.reset()
+            Fails.fault = name
+            with self.subTest(name), self.assertRaisesRegex(redman.ArgumentError, f"Fails.{name} raised KeyError") as caught:
+                redman.Pool(Fails, options={"frequency": 20}).reset() if name == "scene" else pool.reset() if name == "reset" else pool.step(0.0)
+            self.assertIsInstance(caught.exception.__cause__, KeyError)
+            self.assertEqual(caught.exception.code, redman.ResultCode.ARGUMENT)
+        Fails.unregister()
+
+    def test_what_a_function_raises_comes_out_of_no_other_call(self):
+        class NoScene(PushBall):
+            def scene(self, s):
+                raise ValueError("no scene")
+
+        self.addCleanup(NoScene.unregister)
+        with self.assertRaisesRegex(redman.ArgumentError, "NoScene.scene raised ValueError"):
+            redman.Pool(NoScene)
+        self.assertNotIn("no_scene", redman.tasks())
+        other = redman.Pool("recall", 2)
+        other.reset()
+        told = []
+
+        def step_other():
+            try:
+                other.step(other.baseline("hold"))
+            except redman.Error as error:
+                told.append(error)
+
+        class Nested(Broken):
+            name = "nested_ball"
+
+            def reset(self, w):
+                if Broken.fault:  # judge of the same step has raised
+                    step_other()
+                    thread = threading.Thread(target=step_other)
+                    thread.start()
+                    thread.join()
+                super().reset(w)
+
+        pool = redman.Pool(Nested)
+        pool.reset()
+        shield = redman.Shield(pool)
+        Broken.fault = "raises"
+        with self.assertRaisesRegex(redman.ArgumentError, "Nested.judge raised ValueError: no such thing"):
+            pool.step(pool.baseline("hold"))
+        self.assertEqual(told, [])
+        with self.assertRaisesRegex(redman.Error, "Nested.judge raised ValueError: no such thing"):
+            shield.act(pool.baseline("hold"))
+        other.step(other.baseline("hold"))
 
     def test_what_a_function_raises_comes_out_of_step(self):
         pool = redman.Pool(Broken, num_envs=2)

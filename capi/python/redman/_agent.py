@@ -20,8 +20,7 @@ from . import _abi, _discovery
 from ._abi import ActMode
 from ._error import ArgumentError, Error, NotFoundError, StateError, UsageError
 from ._files import read_whole, write_whole
-from ._library import (Handle, assign, bytes_of, check, encoded, failure, instance, int32, lib, raise_kept, raised, raw, real, sized,
-                       text)
+from ._library import (Handle, assign, bytes_of, check, encoded, failure, instance, int32, lib, raw, real, sized, text)
 from ._limits import CostLimits, each_cost
 from ._names import Hinted, keywords, nearest, one_of
 from ._options import Given, Options, Value, as_dict, kind_of, laid, option_array, read_settings, settings_of
@@ -365,23 +364,23 @@ class Agent(Taught, Hinted):
         handle signals."""
         if threading.current_thread() is not threading.main_thread():
             self._check(call(self._a, *arguments))
-            if raised:
-                raise_kept()
             return
         go: SimpleQueue[None] = SimpleQueue()
         done = threading.Lock()
         given_up: list[bool] = []
-        ended: list[bool] = []
-        failed: list[Error] = []
+        ended: list[bool] = []  # whether it succeeded
+        failed: list[BaseException] = []
 
         def work() -> None:
             go.get()
+            code = -1
             try:
                 code = 0 if given_up else call(self._a, *arguments)
-                if code:
-                    failed.append(self._fail(code))  # the text is this thread's
+                self._check(code)  # the text is this thread's
+            except BaseException as error:
+                failed.append(error)
             finally:
-                ended.append(True)
+                ended.append(code == 0)
                 done.release()
 
         started = None
@@ -396,13 +395,12 @@ class Agent(Taught, Hinted):
             if started is not None:  # else it finds that this was given up
                 lib.rdm_agent_cancel(self._a)
                 self._wait(ended)
-                if not failed:
+                failed.clear()  # no cycle with a traceback
+                if ended[0]:
                     self._renew()
             raise
         if failed:
-            raise failed[0]
-        if raised:
-            raise_kept()
+            raise failed.pop()
 
     @staticmethod
     def _wait(ended: list[bool]) -> None:
@@ -553,6 +551,7 @@ class Agent(Taught, Hinted):
     def _check(self, code: int) -> None:
         if code:
             raise self._fail(code)
+        check(code)
 
 
 def _named_parts(fields: Mapping[str, tuple[int, int]]) -> list[tuple[str, str, int, int]]:

@@ -5,9 +5,8 @@ import ctypes
 from typing import Any, Callable
 
 from . import _abi
-from ._abi import ResultCode
 from ._error import NotFoundError, UsageError
-from ._library import raised
+from ._library import guarded
 from ._names import nearest
 
 
@@ -15,8 +14,9 @@ def c_function(member: str, function: Callable[..., Any]) -> Any:
     """Turns a Python function into a member of a struct of redman.h: c_function("rdm_task_def.judge", judge).
 
     It is called with the arguments that the header lists; returning None or 0 means success. An exception makes that call
-    fail, and is the cause of the redman.Error that the call from Python then raises. Keep the result as long as the library
-    may call it, for a task as long as it is registered.
+    fail, and is the cause of the redman.Error that the call from Python then raises; in a function that returns nothing,
+    such as log, it goes to sys.unraisablehook. Keep the result as long as the library may call it, for a task as long as it is
+    registered.
     """
     pointer: Any = getattr(ctypes, "_CFuncPtr")
     members: dict[str, Any] = {f"{key}.{field[0]}": field[1] for key, kind in _abi.STRUCTS.items()
@@ -26,13 +26,4 @@ def c_function(member: str, function: Callable[..., Any]) -> Any:
     if not callable(function):
         raise UsageError(f"{member}: it must be a function, not {function!r}")
     answers = members[member]._restype_ is ctypes.c_int32
-
-    def call(*arguments: Any) -> Any:
-        try:
-            code = function(*arguments)
-            return (0 if code is None else int(code)) if answers else code
-        except BaseException as error:
-            raised.append((member.partition(".")[2], error))
-            return int(ResultCode.INTERNAL) if answers else None
-
-    return members[member](call)
+    return members[member](guarded(member.partition(".")[2], function, anywhere=True) if answers else function)

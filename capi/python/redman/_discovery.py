@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Callable, Dict, Iterable, Iterator, Optio
 from . import _abi
 from ._abi import OptionKind, OptionLevel
 from ._error import NotFoundError, UsageError
-from ._library import encoded, filled, check, lib, sized
+from ._library import check, encoded, filled, forget_raised, lib, sized
 from ._names import nearest
 from ._options import Value, default_of, laid
 from ._paths import is_file, named
@@ -193,15 +193,19 @@ def find(call: Callable[..., int], name: str) -> int:
 
 
 def listed(at: Callable[[int], R], struct: type[ctypes.Structure], call: Callable[..., int], count: int) -> Iterator[R]:
-    """Records of the numbers below count, without those that were destroyed; the library is asked for cached ones too."""
+    """Records of the numbers below count, without those that were destroyed or whose class has a scene that raises; the library is
+    asked for cached ones too."""
     row = sized(struct)
     for index in range(count):
         if call(index, byref(row)) == 0:
             yield at(index)
+        else:
+            forget_raised()
 
 
 def tasks() -> dict[str, TaskInfo]:
-    """All tasks by name; empty in a build without simulation."""
+    """All tasks by name; empty in a build without simulation. A class of your own whose scene raises is left out; redman.Pool
+    raises its error."""
     return Listed(listed(task_at, _abi.rdm_task, lib.rdm_task_at, lib.rdm_task_count()), task)
 
 

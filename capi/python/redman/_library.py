@@ -6,6 +6,7 @@ import operator
 import os
 import re
 import sys
+import threading
 from ctypes import byref, c_size_t
 from pathlib import Path
 from typing import Any, Callable, Mapping, Optional, TypeVar
@@ -13,6 +14,7 @@ from typing import Any, Callable, Mapping, Optional, TypeVar
 import numpy as np
 
 from . import _abi
+from ._abi import ResultCode
 from ._error import ArgumentError, Error, RangeError, UsageError, error_of
 
 Struct = TypeVar("Struct", bound=ctypes.Structure)
@@ -87,8 +89,28 @@ def encoded(value: str | os.PathLike[str], name: str) -> bytes:
     return out
 
 
-# What functions of Python that the library called have raised, (function, exception), until a call from Python tells it.
-raised: list[tuple[str, BaseException]] = []
+# What a function of Python that the library called has raised, (function, exception), until the call from Python that ran it
+# tells it: by thread, under 0 where the library may have called it on another one.
+raised: dict[int, tuple[str, BaseException]] = {}
+
+
+def guarded(name: str, function: Callable[..., Any], anywhere: bool = False) -> Callable[..., int]:
+    """The function as the library can call it: what it raises is kept, and ARGUMENT is returned. anywhere: on any thread."""
+    def call(*arguments: Any) -> int:
+        thread = 0 if anywhere else threading.get_ident()
+        kept = raised.pop(thread, None)  # of the same call; calls within this function must not tell it
+        try:
+            answer = function(*arguments)
+            code = 0 if answer is None else int(answer)
+        except BaseException as error:
+            code = int(ResultCode.ARGUMENT)
+            if kept is None or not isinstance(error, Exception):  # the first one is told, unless it is Ctrl-C
+                kept = name, error
+        if kept is not None:
+            raised[thread] = kept
+            kept = None  # no cycle with the traceback
+        return code
+    return call
 
 
 # What the library's texts tell to call, as it is said here.
@@ -105,18 +127,22 @@ def failure(code: int) -> Error:
     said = text(lib.rdm_last_error())
     said = re.sub(r"\bsettings line \d+: ", "", said)  # a dict of options has no lines
     error = error_of(code, re.sub(r"\brdm_\w+", lambda found: _CALLS.get(found[0], found[0]), said))
-    return error if not raised else _of_python(error)
+    return _of_python(error) or error
 
 
-def raise_kept() -> None:
-    """Raises what a Python function raised during a call that succeeded, since it ended only an episode."""
-    raise _of_python(ArgumentError())
+def forget_raised() -> None:
+    """After a call whose failure is no error."""
+    for thread in (threading.get_ident(), 0):
+        raised.pop(thread, None)
 
 
-def _of_python(error: Error) -> Error:
-    """The error, with the first exception that Python raised as its cause."""
-    name, cause = raised[0]
-    raised.clear()
+def _of_python(error: Error) -> Optional[Error]:
+    """The error, with the exception that a function of Python raised in this call as its cause; None if there is none."""
+    found = raised.get(threading.get_ident()) or raised.get(0)
+    if found is None:
+        return None
+    forget_raised()
+    name, cause = found
     if not isinstance(cause, Exception):  # Ctrl-C
         raise cause
     said = f"{name} raised {type(cause).__name__}: {cause}"
@@ -126,9 +152,12 @@ def _of_python(error: Error) -> Error:
 
 
 def check(code: int) -> None:
-    """Raises unless code is RDM_OK."""
+    """Raises unless code is RDM_OK and no function of Python raised in the call, which may succeed if that ended only an
+    episode."""
     if code:
         raise failure(code)
+    if raised and (error := _of_python(ArgumentError())):
+        raise error
 
 
 def sized(kind: type[Struct]) -> Struct:

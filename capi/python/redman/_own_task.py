@@ -9,9 +9,9 @@ from typing import Any, Callable, ClassVar, Mapping, NamedTuple, Optional
 import numpy as np
 
 from . import _abi
-from ._abi import OptionKind, ResultCode
+from ._abi import OptionKind
 from ._error import ArgumentError, UsageError
-from ._library import assign, check, encoded, lib, raised, sized
+from ._library import assign, check, encoded, guarded, lib, sized
 from ._names import nearest
 from ._options import option_array
 from ._scene import SceneBuilder
@@ -74,8 +74,8 @@ class Task:
         run = redman.train(PushBall, steps=3e5)
 
     w is a Worlds of n rows: all worlds of the pool, or some of them; a row must depend on its own world alone, which
-    check_task tests. What an episode has to remember is in `state`. An exception in a function ends the episodes of the
-    worlds in that call, and is raised by pool.step with its traceback.
+    check_task tests. What an episode has to remember is in `state`. An exception in a function is the cause of the
+    redman.ArgumentError that Pool, reset or step raises; in a step it ends the episodes of the worlds in that call.
     """
 
     name: ClassVar[str] = ""  # letters, digits, '_'; the class's own name in lower case unless it is set
@@ -259,7 +259,8 @@ class _Description:
                 self.kept.append(array)
         kinds: dict[str, Any] = {field[0]: field[1] for field in _abi.rdm_task_def._fields_}
         for member in ("build", "reset_many", "control_many", "judge_many", "observe_many"):
-            call = self._guarded("scene" if member == "build" else member.replace("_many", ""), getattr(self, "_" + member))
+            name = "scene" if member == "build" else member.replace("_many", "")
+            call = guarded(f"{self.where}.{name}", getattr(self, "_" + member))
             function = kinds[member](call) if member == "build" else _MANY(call)
             setattr(d, member, ctypes.cast(function, kinds[member]))
             self.kept.append(function)
@@ -285,19 +286,9 @@ class _Description:
             raise UsageError(f"{self.where}.options[{key!r}]: it must be a number, a bool, a text or (low, high), not {value!r}")
         row.low, row.high = (-2147483648, 2147483647) if row.kind == OptionKind.INTEGER else (-1e9, 1e9)
 
-    def _guarded(self, name: str, function: Callable[..., None]) -> Callable[..., int]:
-        def call(user: Any, *arguments: Any) -> int:
-            try:
-                function(*arguments)
-                return 0
-            except BaseException as error:
-                raised.append((f"{self.where}.{name}", error))
-                return int(ResultCode.INTERNAL)
-        return call
-
     # --- what the library calls
 
-    def _build(self, scene: Any, instance: Any) -> None:
+    def _build(self, user: Any, scene: Any, instance: Any) -> None:
         options = {key: self._value(scene, key, default) for key, default in self.kind.options.items()}
         task = self.kind()
         s = SceneBuilder(scene, options)
@@ -350,19 +341,19 @@ class _Description:
             self.arrays[key] = known
         return known[:n]
 
-    def _reset_many(self, instance: int, at: int) -> None:
+    def _reset_many(self, user: Any, instance: int, at: int) -> None:
         w, rows = self._rows(at)
         self._task(instance).reset(w)
         if self.kind.draws:
             w._keep_streams(rows.states, *self._stream())
 
-    def _control_many(self, instance: int, at: int) -> None:
+    def _control_many(self, user: Any, instance: int, at: int) -> None:
         w, rows = self._rows(at)
         if self.kind.draws:
             w._draw_from(rows.states, *self._stream())
         self._task(instance).control(w, self._array(rows.actions, w.n, np.float32, self.kind.action_dim))
 
-    def _judge_many(self, instance: int, at: int) -> None:
+    def _judge_many(self, user: Any, instance: int, at: int) -> None:
         w, rows = self._rows(at)
         w.step = self._array(rows.steps, w.n, np.int32)
         if self.kind.draws:
@@ -394,7 +385,7 @@ class _Description:
             raise ArgumentError(f"{self.where}.judge: the task has no cost {name!r}{nearest(name, self.columns)}")
         return self.columns[name]
 
-    def _observe_many(self, instance: int, at: int) -> None:
+    def _observe_many(self, user: Any, instance: int, at: int) -> None:
         w, rows = self._rows(at)
         given = self._task(instance).observe(w)
         out = self._array(rows.obs, w.n, np.float32, self.width)

@@ -14,7 +14,7 @@ from ._actor import on_task
 from ._agent import Agent
 from ._callbacks import c_function
 from ._error import UsageError
-from ._library import Handle, assign, bytes_of, check, filled, instance, int32, lib, raise_kept, raised, raw, sized
+from ._library import Handle, assign, bytes_of, check, filled, instance, int32, lib, raw, sized
 from ._limits import CostLimits, each_cost
 from ._names import Hinted, keywords
 from ._options import Options, Value, as_dict, read_settings, settings_of
@@ -130,8 +130,6 @@ class Planner(Hinted):
         with where._lock, self._lock, contextlib.nullcontext() if self._agent is None else self._agent._lock:
             check(lib.rdm_planner_act(self._handle.value, where._open(), int32(env, "env"), action.ctypes.data,
                                       byref(self._found)))
-        if raised:
-            raise_kept()
         return action
 
     __call__ = act

@@ -17,8 +17,8 @@ from ._abi import Autoreset, BaselineKind
 from ._error import ArgumentError, Error, NotFoundError, StateError, UsageError
 from ._html import image, number, table
 from ._hold import LAST, Watch
-from ._library import (Handle, assign, check, encoded, failure, filled, instance, int32, lib, raise_kept, raised, raw, real, sized,
-                       text, whole)
+from ._library import (Handle, assign, check, encoded, failure, filled, instance, int32, lib, raised, raw, real, sized, text,
+                       whole)
 from ._names import Hinted, keywords, nearest, one_of
 from ._options import Options, Told, Value, as_dict, read_settings, settings_of
 from ._paths import by_name, named_options
@@ -315,8 +315,7 @@ class Pool(Hinted):
     def _check(self, code: int) -> None:
         if code:
             raise self._fail(code)
-        if raised:
-            raise_kept()
+        check(code)
 
     def watch(self, action: Any, centered: bool = False) -> None:
         """Warns when an action comes directly from a policy at each of several steps, during which one action should be held.
