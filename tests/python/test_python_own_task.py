@@ -235,6 +235,24 @@ class OwnTask(unittest.TestCase):
         other.reset()
         self.assertEqual(other.obs[0, 4], np.float32(0.2))
 
+    def test_a_range_is_the_default_of_an_option(self):
+        pool = redman.Pool(PushBall, num_envs=50, seed=1)
+        starts = abs(pool.reset()[:, :2])
+        self.assertTrue((starts > 0.2).all() and (starts < 1).all() and starts.std() > 0.1)
+        self.assertEqual((pool.options["start"], redman.task(PushBall).options["start"].default), ("0.2..1", "0.2..1"))
+        again = redman.Pool(PushBall, num_envs=50, seed=1, options={"start": (0.2, 1.0)})
+        np.testing.assert_array_equal(again.reset(seeds=1), pool.reset(seeds=1))
+        for key in ("start", "START"):
+            alone = redman.Pool(PushBall, num_envs=5, options={key: 0.6})
+            np.testing.assert_allclose(abs(alone.reset()[:, :2]), 0.6, rtol=1e-6)
+            self.assertEqual(alone.options["start"], 0.6)
+        with tempfile.TemporaryDirectory() as folder:
+            redman.train(PushBall, steps=60, envs=2, progress=False, out=f"{folder}/run")
+            self.assertEqual(json.loads(Path(folder, "run", "config.json").read_text())["env_cfgs"]["start"], "0.2..1")
+        redman.check_task(PushBall)
+        with self.assertRaisesRegex(redman.RangeError, "start: the range 1..0.2"):
+            redman.Pool(type("Turned", (PushBall,), {"options": {**PushBall.options, "start": (1.0, 0.2)}}))
+
     def test_each_function_raises_the_same_kind_of_error(self):
         class Fails(Cart):
             fault = ""

@@ -83,7 +83,8 @@ class Task:
     action_dim: ClassVar[int] = 0  # entries of an action, each in [-1, 1]; required
     fields: ClassVar[Mapping[str, Any]] = {}  # of an observation: name -> count, or (count, unit), or (count, unit, low, high)
     costs: ClassVar[Any] = {}  # name -> limit on an episode's sum, None: no limit; or (limit, help). The first is the one learners limit
-    options: ClassVar[Mapping[str, Any]] = {}  # name -> default: a number, a bool, a text; or (low, high), from which reset draws
+    # name -> default: a number, a bool, a text; or (low, high), a range: scene gets it from s.option, and reset draws from it
+    options: ClassVar[Mapping[str, Any]] = {}
     state: ClassVar[Mapping[str, int]] = {}  # name -> count of numbers that a world keeps over an episode: Worlds.state
     draws: ClassVar[bool] = False  # w.uniform and w.normal work in control and judge, too
     defaults: ClassVar[Mapping[str, Any]] = {}  # options of agents that learn it
@@ -272,8 +273,8 @@ class _Description:
     def _option(self, row: Any, key: str, value: Any) -> None:
         row.key, row.help = encoded(key, f"{self.where}.options"), encoded(f"of {self.where}", "help")
         if _pair(value):
-            row.kind, row.choices, row.text = OptionKind.NUMBER, b"a..b", encoded(f"{float(value[0])!r}..{float(value[1])!r}", key)
-            row.number = (value[0] + value[1]) / 2
+            row.kind, row.choices = OptionKind.NUMBER, b"a..b"
+            row.number = (value[0] + value[1]) / 2  # the library's default; that of a pool is the range, by ranges_of
         elif isinstance(value, bool):
             row.kind, row.number = OptionKind.FLAG, int(value)
         elif isinstance(value, int):
@@ -412,3 +413,9 @@ class _Description:
 
 
 _descriptions: dict[int, _Description] = {}
+
+
+def ranges_of(number: int) -> dict[str, tuple[float, float]]:
+    """The options of a task whose default is a range, which its pools have unless others are given."""
+    described = _descriptions.get(number)
+    return {} if described is None else {key: (value[0], value[1]) for key, value in described.kind.options.items() if _pair(value)}
