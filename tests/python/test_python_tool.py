@@ -54,6 +54,15 @@ class Command(unittest.TestCase):
                            REDMAN_TOOL="")
         self.assertRegex(done.stderr, "UnsupportedError: a .onnx file needs the command redman, which was not found")
 
+    def test_a_variable_that_names_no_program_is_told(self):
+        calls = ("redman.Policy.trained('bandit').export('p.onnx')", "redman.sweep('bandit', steps=8, out='x')", "redman.view('bandit')",
+                 "redman.Policy.trained('bandit').episode('bandit')._repr_html_()", "redman.train('jenga', steps=8, from_='demo')")
+        for named, said in ((self.folder / "gone", "MissingFileError REDMAN_TOOL: .*gone: there is no such file"),
+                            (Path(__file__), "FileError REDMAN_TOOL: .*test_python_tool.py: it is not a program")):
+            lines = "".join(f"try: {call}\nexcept redman.Error as error: print(type(error).__name__, error)\n" for call in calls)
+            done = self.run_it(command=[sys.executable, "-c", f"import redman\n{lines}"], REDMAN_TOOL=str(named))
+            self.assertRegex(done.stdout, f"^({said}.*\n){{{len(calls)}}}$", done.stderr)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -8,13 +8,21 @@ import sys
 from pathlib import Path
 from typing import Optional
 
-from ._error import ArgumentError, UnsupportedError
+from ._error import ArgumentError, FileError, UnsupportedError
+from ._files import must_exist
 from ._library import lib
 
 
 def tool_path() -> Optional[str]:
-    """The path of the tool: REDMAN_TOOL, beside this package or the library, or on PATH; None if there is none."""
-    return os.environ.get("REDMAN_TOOL") or _found()
+    """The path of the tool: REDMAN_TOOL, beside this package or the library, or on PATH; None if there is none. MissingFileError or
+    FileError if REDMAN_TOOL names no program."""
+    named = os.environ.get("REDMAN_TOOL")
+    if not named:
+        return _found()
+    must_exist(named, "REDMAN_TOOL:")
+    if not (os.path.isfile(named) and os.access(named, os.X_OK)):
+        raise FileError(f"REDMAN_TOOL: {named}: it is not a program that can be run")
+    return os.path.abspath(named)
 
 
 def _found() -> Optional[str]:
