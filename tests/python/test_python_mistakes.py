@@ -8,6 +8,7 @@ import pickle
 import re
 import tempfile
 import unittest
+from unittest import mock
 
 import numpy as np
 
@@ -163,6 +164,11 @@ def calls(thing, folder):
         (redman.gym.Env, {"task": TASK, "seed": 0, "options": {}, "action_repeat": 1, "center": None, "observe": None, "width": 320}),
         (redman.make_vec, {"task": TASK, "num_envs": 2, "threads": 0, "autoreset_mode": None}), (redman.make(TASK).reset, {"seed": 1, "options": None}),
         (lambda **more: redman.evaluate("zero", **more), {"task": TASK, "episodes": 1, "num_envs": 1, "seed": 0, "options": {}, "cost_limits": None}),
+        (lambda **more: redman.train("two_state", steps=8, envs=2, horizon=4, progress=False, **more),
+         {"algo": "ppo", "seed": 0, "threads": 1, "options": {}, "cost_limits": None, "out": None, "callback": None, "eval_every": 10,
+          "overwrite": True, "task_file": None, "checkpoint_every": 10, "tensorboard": False, "from_": None, "teach": None, "time_budget": None,
+          "shield": None, "ranks": None}),
+        (lambda **more: redman.train(**more), {"resume": f"{folder}/none"}),
         (redman.stats.interval, {"scores_by_task": {"a": [1.0, 2.0]}, "level": 0.9}),
     )
 
@@ -179,6 +185,20 @@ class Types(unittest.TestCase):
                     for value in ODD:
                         with self.subTest(f"{call.__qualname__}({argument}={value!r})"):
                             self.refuse(call, {**right, argument: value}, argument)
+
+    def test_arguments_of_runs_are_named(self):
+        with self.assertRaisesRegex(redman.UsageError, r"teach: it must be a dict .*from_='demo'"):
+            redman.train("jenga", teach="demo")
+        for teach in ({"success_only": "yes"}, {"clone_rate": "x"}, {"start_share": (0, 1, 2)}, {"beta": None}, ["dagger"]):
+            with self.subTest(teach), self.assertRaisesRegex(redman.ArgumentError, "^teach: "):
+                redman.train("jenga", from_="demo", teach=teach)
+        for wrong in ({"options": "x"}, {"vary": {"a": 1}}, {"tasks": 3}, {"steps": "x"}, {"envs": 1.5}, {"out": 3}):
+            with self.subTest(wrong), mock.patch("redman._sweep.tool_path", return_value="none"):
+                with self.assertRaisesRegex(redman.UsageError, f"^{next(iter(wrong))}"):
+                    redman.sweep(**{"tasks": "bandit", "steps": 8, "out": "x", **wrong})
+        for wrong in ({"reward": "x"}, {"options": {"cost_limit": "x"}}, {"options": ["lr"], "lr": 1}):
+            with self.subTest(wrong), self.assertRaisesRegex(redman.UsageError, "^(reward|cost_limit|options): it must be"):
+                redman.train("bandit", **wrong)
 
     def refuse(self, call, arguments, name):
         """A wrong argument may be one that is right here; else the error is redman's and has its name."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Callable, ClassVar, Iterable, Mapping, Ty
 from . import _abi
 from ._error import ArgumentError, UsageError
 from ._library import Thing, check, encoded, lib, text
+from ._options import as_dict
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -77,7 +78,7 @@ def _known(function: Callable[..., Any], placed: list[str], given: dict[str, Any
         own = aliases.get(key, key)
         option = _option(key) if options and own not in known and key not in hints else ""
         if option:
-            laid = dict(given.get("options") or {})
+            laid = as_dict(given.get("options"))
             if option in laid or option in out.get("options", {}):
                 raise UsageError(f"{name}: option {option} is given twice")
             out["options"] = {**laid, **out.get("options", {}), option: value}

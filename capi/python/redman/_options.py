@@ -42,7 +42,7 @@ class Told(Dict[str, Value]):
 Kinds = Mapping[str, int]  # OptionKind of each key; noise.right.tip_force is one of noise.FIELD
 
 
-def as_dict(options: Optional[Options], name: str = "options") -> dict[str, Any]:
+def as_dict(options: Optional[Mapping[str, Any]], name: str = "options") -> dict[str, Any]:
     """An argument that is a dict of options, or None for none."""
     if options is None:
         return {}

@@ -124,18 +124,18 @@ Costs = Union[Mapping[str, Union[RowFunction, str]], Sequence[RowFunction], RowF
 class Own:
     """The functions of a run or of an evaluation."""
 
-    def __init__(self, reward: Union[None, RowFunction, str], costs: Optional[Costs], where: str = "") -> None:
+    def __init__(self, reward: Optional[RowFunction], costs: Optional[Costs], where: str = "") -> None:
         self.where = where  # whose they are, where they were read
-        if reward is not None and not callable(reward) and not isinstance(reward, str):
-            raise UsageError(f"reward: it must be a function of redman.Rows, not {reward!r}")
-        if callable(reward):
+        if reward is not None:
+            if not callable(reward):
+                raise UsageError(f"reward: it must be a function of redman.Rows, not {reward!r}")
             _need_one_argument("reward", reward)
         self.reward = reward
         self.costs = None if costs is None else _by_name(costs)
         self._paths: dict[str, Optional[str]] = {}  # of functions that were not imported yet, by what they are
 
     @classmethod
-    def wanted(cls, reward: Union[None, RowFunction, str], costs: Optional[Costs]) -> Optional[Own]:
+    def wanted(cls, reward: Optional[RowFunction], costs: Optional[Costs]) -> Optional[Own]:
         return None if reward is None and costs is None else cls(reward, costs)
 
     @classmethod

@@ -446,12 +446,12 @@ class Policy(Hinted):
         return f"<Policy {i.task or 'of your own task'}: {i.obs_dim} to {i.action_dim}, {i.num_params} parameters>"
 
 
-def policy_of(policy: Backup, task: _discovery.TaskName) -> Policy:
-    """A policy as it may be said."""
+def policy_of(policy: Backup, task: _discovery.TaskName, name: str = "policy") -> Policy:
+    """A policy as it may be said. name: of the argument."""
     if isinstance(policy, Policy):
         return policy
     if isinstance(policy, str) and policy == "trained":
         return Policy.trained(task)
     if isinstance(policy, (str, os.PathLike)):
         return Policy.load(policy)
-    raise UsageError(f'policy: it must be a redman.Policy, its file or run folder, or "trained", not {policy!r}')
+    raise UsageError(f'{name}: it must be a redman.Policy, its file or run folder, or "trained", not {policy!r}')

@@ -6,14 +6,18 @@ import os
 import subprocess
 from typing import Any, Iterable, Mapping, Optional, Sequence, Union
 
-from ._error import ArgumentError, UnsupportedError
+from ._error import ArgumentError, UnsupportedError, UsageError
+from ._library import encoded, int32, real
+from ._options import as_dict
 from ._tool import tool_path
 
 Words = Union[str, Iterable[str]]
 Plain = Union[str, float, bool]
 
 
-def _joined(words: Union[str, Iterable[Any]]) -> str:
+def _joined(words: Union[str, Iterable[Any]], name: str) -> str:
+    if not hasattr(words, "__iter__") or isinstance(words, (bytes, type)):
+        raise UsageError(f"{name}: it must be a word or a list of words, not {words!r}")
     return words if isinstance(words, str) else ",".join(str(w) for w in words)
 
 
@@ -39,15 +43,18 @@ def sweep(tasks: Words, algos: Words = "ppo_lag", seeds: Union[str, int, Iterabl
     if tool is None:
         raise UnsupportedError("a sweep needs the command redman, which was not found: it is not in this package, it is not on PATH, and "
                                "REDMAN_TOOL is not set")
-    listed = f"0..{seeds - 1}" if isinstance(seeds, int) else _joined(seeds)
-    words = ["sweep", "--json", "--tasks", _joined(tasks), "--algos", _joined(algos), "--seeds", listed, "--steps", repr(float(steps)),
-             "--out", os.fspath(out), "--envs", str(envs), "--jobs", str(jobs), "--minutes", repr(float(minutes))]
-    for key, value in (options or {}).items():
+    listed = f"0..{seeds - 1}" if isinstance(seeds, int) else _joined(seeds, "seeds")
+    words = ["sweep", "--json", "--tasks", _joined(tasks, "tasks"), "--algos", _joined(algos, "algos"), "--seeds", listed,
+             "--steps", repr(real(steps, "steps")), "--out", os.fsdecode(encoded(out, "out")), "--envs", str(int32(envs, "envs")),
+             "--jobs", str(int32(jobs, "jobs")), "--minutes", repr(real(minutes, "minutes"))]
+    for key, value in as_dict(options).items():
         words += ["--set", f"{key}={_text(value)}"]
-    for key, values in (vary or {}).items():
-        words += ["--vary", f"{key}={_joined(_text(v) for v in values)}"]
+    for key, values in as_dict(vary, "vary").items():
+        if isinstance(values, str) or not hasattr(values, "__iter__"):
+            raise UsageError(f"vary: {key} must be a list of values, not {values!r}")
+        words += ["--vary", f"{key}={_joined(map(_text, values), 'vary')}"]
     if cost_limit is not None:
-        words += ["--cost-limit", repr(float(cost_limit))]
+        words += ["--cost-limit", repr(real(cost_limit, "cost_limit"))]
     done = subprocess.run([tool, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, stdin=subprocess.DEVNULL)
     if done.returncode:
         said = done.stderr.strip() or done.stdout.strip() or f"redman sweep ended with {done.returncode}"

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import copy
+import math
 import os
 from dataclasses import dataclass, field
 from typing import Any, Mapping, Optional, Sequence, Union
@@ -9,9 +10,9 @@ from typing import Any, Mapping, Optional, Sequence, Union
 from . import _discovery
 from ._agent import Agent
 from ._error import ArgumentError, UnsupportedError, UsageError
-from ._library import whole
+from ._library import flag, real, whole
 from ._names import nearest
-from ._options import Value, shown
+from ._options import Value, as_dict, shown
 from ._policy import Backup, Policy, policy_of
 from ._pool import Pool
 from ._recording import Recording
@@ -54,7 +55,11 @@ class Teach:
     def wanted(cls, teacher: Any, settings: Optional[Mapping[str, Any]], task: Optional[str]) -> Optional[Teach]:
         """The teacher that was asked for; None: there is none."""
         teach = cls(teacher)
-        for key, value in (settings or {}).items():
+        if isinstance(settings, (str, os.PathLike)):
+            raise UsageError(f"teach: it must be a dict of settings, such as {{\"success_only\": True}}, not {settings!r}; the teacher is "
+                             f"from_={os.fspath(settings)!r}")
+        settings = as_dict(settings, "teach")
+        for key, value in settings.items():
             teach._set(key, value)
         if teacher is None and not teach.settings["pretrain"]:
             if settings:
@@ -70,7 +75,7 @@ class Teach:
         if teach.acts:
             teach.said = "" if teacher is None else os.fspath(teacher) if isinstance(teacher, (str, os.PathLike)) else "a policy"
             return teach
-        odd = [key for key in settings or {} if key in _ACTING]
+        odd = [key for key in settings if key in _ACTING]
         if odd:
             raise UsageError(f"teach: {odd[0]} needs a teacher that acts: give from_=\"demo\", a .demo file, or teach={{\"dagger\": 2}}")
         if _is_recording(teacher):
@@ -79,7 +84,7 @@ class Teach:
         else:
             if word == "trained" and task is None:
                 raise UsageError("from_=\"trained\": the task is missing: give task=")
-            teach.policy = policy_of(teach.teacher, task or "")
+            teach.policy = policy_of(teach.teacher, task or "", "from_")
             origin = teach.policy.origin
             named = isinstance(teacher, (str, os.PathLike))
             teach.said = os.fspath(teacher) if named else origin.folder if origin and origin.folder else "a policy"
@@ -99,20 +104,22 @@ class Teach:
             raise UsageError(f"teach: no {key}{nearest(key, set(_SETTINGS) - {'start_share_end'})}; there are "
                              f"{', '.join(name for name in _SETTINGS if name != 'start_share_end')}")
         if key == "start_share":
-            first, last = value if isinstance(value, (tuple, list)) else (value, value)
+            pair = list(value) if isinstance(value, (tuple, list)) else [value, value]
+            first, last = (real(share, "teach: start_share") for share in (pair if len(pair) == 2 else [math.nan, math.nan]))
             if not (0 <= first <= 1 and 0 <= last <= 1):
                 raise ArgumentError(f"teach: start_share: {value!r} is not a share from 0 to 1 or a pair of shares")
-            self.settings.update(start_share=float(first), start_share_end=float(last))
+            self.settings.update(start_share=first, start_share_end=last)
         elif isinstance(_SETTINGS[key], bool):
-            self.settings[key] = bool(value)
+            self.settings[key] = bool(flag(value, f"teach: {key}"))
         elif isinstance(_SETTINGS[key], int):
             least = 1 if key in ("clone_epochs", "decisions") else 0
             self.settings[key] = whole(value, f"teach: {key}", least, int(_MOST.get(key, 100_000)))
         else:
             most = _MOST.get(key, 10.0)
-            if not 0 <= float(value) <= most:
+            number = real(value, f"teach: {key}")
+            if not 0 <= number <= most:
                 raise ArgumentError(f"teach: {key}: {value!r} is not between 0 and {most}")
-            self.settings[key] = float(value)
+            self.settings[key] = number
 
     @property
     def task(self) -> Optional[str]:

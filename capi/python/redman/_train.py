@@ -15,10 +15,10 @@ from ._curve import settings_of
 from ._error import ArgumentError, FormatError, UnsupportedError, UsageError
 from ._files import MOST_TASK, as_path, read_whole
 from ._imported import path_of
-from ._library import all_cores, whole
+from ._library import all_cores, encoded, flag, real, whole
 from ._limits import CostLimits
 from ._names import folded, keywords
-from ._options import Given, Options, Value
+from ._options import Given, Options, Value, as_dict
 from ._own_costs import Costs, Own, RowFunction
 from ._own_files import load_kept
 from ._paths import is_file, named_options
@@ -176,6 +176,11 @@ def train(task: Any = None, algo: Any = "ppo_lag", steps: Optional[float] = None
     holds their folders, ALGO-{TASK}/seed-N.
     """
     arguments = dict(locals())
+    for name in ("progress", "overwrite", "tensorboard", "view"):
+        arguments[name] = bool(flag(arguments[name], name))
+    for name in ("out", "task_file"):
+        if arguments[name] is not None:
+            arguments[name] = os.fsdecode(encoded(arguments[name], name))
     if any(map(_is_many, (task, algo, seed, resume))):
         return _several(arguments)
     return _one(arguments)[0]
@@ -207,7 +212,7 @@ def _several(arguments: dict[str, Any]) -> list[Run]:
 def _one(given: dict[str, Any]) -> tuple[Run, bool]:
     """Makes one run; returns it and whether a signal ended it."""
     calls = Calls(given["callback"], [View()] if given["view"] else [])
-    ranks, budget = _ranks(given["ranks"]), given["time_budget"]
+    ranks, budget = _ranks(given["ranks"]), None if given["time_budget"] is None else real(given["time_budget"], "time_budget")
     if budget is not None and not budget > 0:
         raise ArgumentError(f"time_budget: {budget} is not above 0 s")
     held = contextlib.ExitStack()
@@ -260,7 +265,7 @@ def _begun(wanted: Settings, given: Mapping[str, Any], held: contextlib.ExitStac
         teach["save_recording"] = rows
     _taught.begin(_taught.words({**given, "threads": wanted.threads}, os.fspath(task), wanted.algo,
                                 {**dict(wanted.of_task), **dict(wanted.of_algo)}, wanted.limits, wanted.shield, teach),
-                  folder, bool(given["progress"]))
+                  folder, given["progress"])
     settings = settings_of_folder(folder)
     settings.out = wanted.out
     if rows.exists():
@@ -311,14 +316,18 @@ def _wanted(given: Mapping[str, Any]) -> Settings:
     if name is None:
         raise UsageError("train: the task is missing: give a task, or resume=folder")
     name = _discovery.task(name).name
-    algo = _discovery.algo(algo).name
+    algo = _discovery.algo(os.fsdecode(encoded(algo, "algo"))).name
     seed, envs = _seed(given["seed"]), whole(given["envs"], "envs", 1, (1 << 31) - 1)
     for counted in ("eval_every", "checkpoint_every"):
         whole(given[counted], counted, 1, (1 << 31) - 1)
-    asked: dict[str, Given] = dict(given["options"] or {})
+    asked: dict[str, Given] = as_dict(given["options"])
     limits = given["cost_limits"]
     for key in [key for key in asked if folded(key) == "cost_limit"]:
-        limit = float(asked.pop(key))  # type: ignore[arg-type]
+        value: Any = asked.pop(key)
+        try:
+            limit = float(value)  # of a text too
+        except (TypeError, ValueError):
+            raise UsageError(f"{key}: it must be a number, not {value!r}") from None
         limits = limit if limits is None else limits
     of_task, of_algo = split_options(name, algo, asked)
     of_task = list(named_options(dict(of_task)).items())
@@ -335,8 +344,8 @@ def _wanted(given: Mapping[str, Any]) -> Settings:
     text = None if task_file is None else read_whole(task_file, "task file", MOST_TASK).decode(errors="replace")
     return Settings(
         name, algo, seed, envs, all_cores(given["threads"], envs), steps, of_task, of_algo, limit_texts(limits, columns),
-        given["eval_every"], given["checkpoint_every"], bool(given["tensorboard"]), text, task_class_of(name), teach,
-        shield_word(given["shield"]), own, "" if given["out"] is None else os.fspath(given["out"]))
+        given["eval_every"], given["checkpoint_every"], given["tensorboard"], text, task_class_of(name), teach,
+        shield_word(given["shield"]), own, given["out"] or "")
 
 
 def task_class_of(name: str) -> Optional[str]:
@@ -351,12 +360,13 @@ _OF_RESUME = ("steps", "threads", "callback", "progress", "time_budget", "ranks"
 
 def _continued(given: Mapping[str, Any]) -> Settings:
     """The settings of a run that is resumed."""
+    folder = os.fsdecode(encoded(given["resume"], "resume"))
     usual = {name: p.default for name, p in inspect.signature(train).parameters.items()}
     odd = [name for name, value in given.items() if name not in _OF_RESUME and value is not usual[name] and value != usual[name]]
     if odd:
         raise UsageError(f"resume: its settings are those of the folder, {', '.join(odd)} too; {', '.join(_OF_RESUME[:5])} may "
-                         f"be given. A new run that begins with its policy is train(..., from_={os.fspath(given['resume'])!r})")
-    settings = settings_of_folder(given["resume"], Own.wanted(given["reward"], given["costs"]))
+                         f"be given. A new run that begins with its policy is train(..., from_={folder!r})")
+    settings = settings_of_folder(folder, Own.wanted(given["reward"], given["costs"]))
     if given["steps"] is not None:
         settings.steps = _steps(given["steps"])
     if given["threads"] is not None:
