@@ -176,6 +176,30 @@ class PettingZoo(unittest.TestCase):
             done |= dones
         self.assertTrue(done.all())
 
+    def test_a_shield_checks_the_actions_of_all_agents(self):
+        env = redman.pettingzoo.SafeEnv("hand_over_safe_joint", 2, seed=1, shield=True, shield_policy="trained")
+        alone = redman.pettingzoo.ParallelEnv("hand_over_safe_joint", seed=1, action_repeat="task", shield=True)
+        self.addCleanup(env.close)
+        self.addCleanup(alone.close)
+        env.reset()
+        _, began = alone.reset()
+        for _ in range(4):
+            actions = [np.array([space.sample() for _ in range(2)]) for space in env.action_space]
+            infos = env.step(actions)[5]
+        for i in range(2):
+            for info, own in zip(infos[i], actions):
+                self.assertEqual(bool(info["intervened"]), info["shield"] != "own")
+                self.assertEqual(info["applied"].shape, own[i].shape)
+                if not info["intervened"]:
+                    np.testing.assert_array_equal(info["applied"], own[i])
+        self.assertGreater(env.worlds.shield.stats.decisions, 0)
+        told = alone.step({agent: alone.action_space(agent).sample() for agent in alone.agents})[4]
+        self.assertEqual(told["left"].keys(), began["left"].keys())
+        self.assertEqual(told["left"]["applied"].shape, alone.action_space("left").shape)
+
+    def test_it_has_the_learning_defaults_of_its_siblings(self):
+        self.assertIs(redman.pettingzoo.defaults, redman.gym.defaults)
+
     def test_the_optimum_of_the_game_is_reached(self):
         """A team within the limit: 10 at cost 0; one that sees both sides 12.5 at 2.5; without a limit 20 at 10."""
         with tempfile.TemporaryDirectory() as folder:

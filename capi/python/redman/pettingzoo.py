@@ -8,8 +8,8 @@
         observations, rewards, terminations, truncations, infos = env.step(actions)
 
 All agents get the team's reward. infos[agent] has "cost", the task's own, "costs" [cost_dim] in the order of env.cost_names,
-and "success". state() is the whole observation, which central critics read. An agent observes the fields of its group, in the
-row's order.
+and "success"; with a shield also "applied" (the agent's part of the action that ran), "intervened" and "shield". state() is the
+whole observation, which central critics read. An agent observes the fields of its group, in the row's order.
 
 SafeEnv has the same worlds under the names of the multi-agent safe suites: step(actions) gives (observations, share_obs,
 rewards, costs, dones, infos, available_actions), lists or arrays with an entry for each agent.
@@ -22,12 +22,14 @@ from typing import Any, Mapping, Optional, Sequence, Union
 
 import numpy as np
 
+from ._defaults import Defaults, defaults
 from ._error import ArgumentError
 from ._policy import Backup
 from ._rows import Array, FloatArray
 from ._shield import Shielding
 from ._team import Group, groups
 from ._worlds import Center, Worlds
+from .gym import shielded_of
 
 try:
     from pettingzoo import ParallelEnv as _ParallelEnv
@@ -38,7 +40,7 @@ except ImportError as error:
     _ParallelEnv = object
     from ._spaces import Box
 
-__all__ = ["ParallelEnv", "SafeEnv"]
+__all__ = ["Defaults", "ParallelEnv", "SafeEnv", "defaults"]
 
 Info = dict[str, Any]
 
@@ -56,6 +58,11 @@ class _Team:
         w = self.worlds
         return (Box(w.obs_low[group.columns], w.obs_high[group.columns], dtype=np.float32),
                 Box(w.action_low[group.actions], w.action_high[group.actions], dtype=np.float32))
+
+    def shielded(self, i: int, group: Group) -> Info:
+        """The entries of infos about the shield in one world: "applied" are the agent's own entries of the action that ran."""
+        told = shielded_of(self.worlds, i)
+        return {**told, "applied": told["applied"][group.actions]} if told else told
 
     def row(self, actions: Mapping[str, Any]) -> FloatArray:
         """The actions of all agents of one world as one row."""
@@ -138,9 +145,8 @@ class ParallelEnv(_ParallelEnv):  # type: ignore[misc,valid-type]
         self.worlds.no_options(options)
         self.worlds.reset(seed if seed is None else [seed])
         self.agents = list(self.possible_agents)
-        told = self._told()
-        nothing = {key: np.zeros_like(value) if isinstance(value, np.ndarray) else type(value)() for key, value in told.items()}
-        return self._seen(), {agent: dict(nothing) for agent in self.agents}
+        return self._seen(), {agent: {key: np.zeros_like(value) if isinstance(value, np.ndarray) else type(value)()
+                                      for key, value in told.items()} for agent, told in self._told().items()}
 
     def step(self, actions: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, float], dict[str, bool], dict[str, bool],
                                                         dict[str, Info]]:
@@ -157,7 +163,7 @@ class ParallelEnv(_ParallelEnv):  # type: ignore[misc,valid-type]
         if terminated or truncated:
             self.agents = []
         return (self._seen(), dict.fromkeys(agents, w.reward.item(0)), dict.fromkeys(agents, terminated),
-                dict.fromkeys(agents, truncated), {agent: dict(told) for agent in agents})
+                dict.fromkeys(agents, truncated), {agent: told[agent] for agent in agents})
 
     def render(self) -> Optional[Array]:
         """A picture [height][width][3] uint8; None without a render_mode."""
@@ -171,9 +177,10 @@ class ParallelEnv(_ParallelEnv):  # type: ignore[misc,valid-type]
         row = self.worlds.obs[0]
         return {name: row[group.columns] for name, group in self._team.named.items()}
 
-    def _told(self) -> Info:
+    def _told(self) -> dict[str, Info]:
         w = self.worlds
-        return {"cost": w.cost.item(0, 0), "costs": w.cost[0].copy(), "success": w.success.item(0)}
+        return {name: {"cost": w.cost.item(0, 0), "costs": w.cost[0].copy(), "success": w.success.item(0), **self._team.shielded(0, group)}
+                for name, group in self._team.named.items()}
 
 
 class SafeEnv:
@@ -188,16 +195,17 @@ class SafeEnv:
 
     task, groups: as those of ParallelEnv. num_envs: worlds, 1 or more. threads: that step them; 0: as many as there are cores.
     seed: 0 to 2^64 - 1, of the first reset, seed + i for world i. options: of the task. action_repeat, center: as those of
-    redman.gym.Env, but here the defaults are those of the task's own learner. Errors are those of ParallelEnv.
+    redman.gym.Env, but here the defaults are those of the task's own learner. shield, shield_policy: as those of redman.gym.Env.
+    Errors are those of ParallelEnv.
     An agent that observes less than another has zeros behind its entries, so that all rows of obs have one width. Worlds restart by
     themselves: the observation after an end is that of the next episode.
     """
 
     def __init__(self, task: str, num_envs: int = 1, *, groups: Optional[str] = None, seed: Optional[int] = None,
                  options: Optional[Mapping[str, Any]] = None, threads: int = 0, action_repeat: Union[int, str] = "task",
-                 center: Center = "initial") -> None:
+                 center: Center = "initial", shield: Shielding = None, shield_policy: Optional[Backup] = None) -> None:
         self._team = _Team(task, groups, num_envs, "same_step", seed=seed, options=options, threads=threads,
-                           action_repeat=action_repeat, center=center)
+                           action_repeat=action_repeat, center=center, shield=shield, shield_policy=shield_policy)
         w, team = self._team.worlds, self._team.groups
         self.num_envs, self.num_agents, self.n_agents = num_envs, len(team), len(team)
         self._width = max(len(group.columns) for group in team)
@@ -225,7 +233,7 @@ class SafeEnv:
         summed over the control steps, dones [num_envs][agents], infos [num_envs][agents] and None.
 
         actions: for each agent an array [num_envs][its entries] in [-1, 1]; ArgumentError for another number or shape. A cost
-        is the task's own, column 0; infos have all of them, "costs" [cost_dim]."""
+        is the task's own, column 0; infos have all of them, "costs" [cost_dim], and with a shield what it did."""
         w, team = self.worlds, self._team.groups
         if len(actions) != len(team):
             raise ArgumentError(f"actions: give those of {len(team)} agents, not of {len(actions)}")
@@ -242,8 +250,8 @@ class SafeEnv:
             return np.repeat(column.astype(np.float32).reshape(-1, 1, 1), len(team), axis=1)
 
         ended = w.terminated | w.truncated
-        infos = [[{"success": bool(w.success[i]), "truncated": bool(w.truncated[i]), "costs": w.cost[i].copy()} for _ in team]
-                 for i in range(self.num_envs)]
+        infos = [[{"success": bool(w.success[i]), "truncated": bool(w.truncated[i]), "costs": w.cost[i].copy(),
+                   **self._team.shielded(i, group)} for group in team] for i in range(self.num_envs)]
         return (*self._looked(), each(w.reward), each(w.cost[:, 0]), np.repeat(ended.reshape(-1, 1), len(team), axis=1), infos,
                 None)
 
