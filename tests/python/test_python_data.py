@@ -51,6 +51,10 @@ class Data(unittest.TestCase):
     def test_the_hash_is_the_tools(self):
         said = subprocess.run([tool_path(), "data", "info", "--json", str(self.path / "ball_run.npz")], stdout=subprocess.PIPE, check=True)
         self.assertEqual(json.loads(said.stdout)["hash"], data.hash(data.load(self.path / "ball_run.npz")))
+        self.assertEqual(data.hash(self.path / "ball_run.npz"), data.hash(data.load(self.path / "ball_run.npz")))
+        for wrong in (lambda: data.hash(3), lambda: data.save(str(self.path / "ball_run.npz"), self.path / "other.npz")):
+            with self.assertRaisesRegex(redman.UsageError, "arrays: it must be a dict of arrays"):
+                wrong()
 
     @unittest.skipIf(h5py is None, "h5py is missing")
     def test_hdf5_has_the_published_keys(self):

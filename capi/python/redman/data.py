@@ -16,13 +16,13 @@ import os
 import tempfile
 import zlib
 from pathlib import Path
-from typing import Any, Union
+from typing import Any, Mapping, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _lerobot
-from ._error import ArgumentError, FormatError
+from ._error import ArgumentError, FormatError, UsageError
 from ._files import must_exist
 from ._optional import optional
 from ._tool import run_tool
@@ -63,6 +63,8 @@ def _begins(episode: npt.NDArray[Any]) -> npt.NDArray[np.int64]:
 
 def _completed(given: Arrays, what: str) -> Arrays:
     """The arrays of a set, checked, of their types, with rows in the order of their episodes."""
+    if not isinstance(given, Mapping):
+        raise UsageError(f"{what}: it must be a dict of arrays by name, as redman.data.load(path) returns it, not {given!r}")
     for name in ("obs", "action", "reward", "cost", "terminated", "truncated"):
         if name not in given:
             raise FormatError(f"{what}: it has no array {name}")
@@ -113,9 +115,10 @@ def without(arrays: Arrays, episodes: list[int]) -> Arrays:
     return _completed(out, "data")
 
 
-def hash(arrays: Arrays) -> str:
-    """The hash of the numbers of the arrays of a set alone, 16 hexadecimal digits, as `redman data info` prints it."""
-    arrays = _completed(arrays, "data")
+def hash(arrays: Union[Arrays, FilePath]) -> str:
+    """The hash of the numbers of the arrays of a set, or of the set at a path, alone: 16 hexadecimal digits, as `redman data info`
+    prints it."""
+    arrays = load(arrays) if isinstance(arrays, (str, os.PathLike)) else _completed(arrays, "arrays")
     value = 14695981039346656037
 
     def add(data: bytes) -> None:
@@ -297,7 +300,7 @@ def save(arrays: Arrays, path: FilePath) -> None:
     """Writes the arrays of a set to path, in the form that follows from the name: .npz, .hdf5 or .h5 (D4RL and DSRL), .minari
     and .lerobot (folders), .mcap."""
     kind = _kind(path)
-    arrays = _completed(arrays, "data")
+    arrays = _completed(arrays, "arrays")
     if kind == "mcap":
         with tempfile.TemporaryDirectory() as folder:
             _save_npz(arrays, f"{folder}/set.npz")
