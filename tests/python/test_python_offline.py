@@ -1,5 +1,9 @@
 """Agent.learn_from: a policy from recorded rows alone, what it reports, and what it refuses."""
+import copy
+import json
+import tempfile
 import unittest
+from pathlib import Path
 
 import numpy as np
 import redman
@@ -53,6 +57,22 @@ class Offline(unittest.TestCase):
             agent.act(np.zeros((1, 1), np.float32))
             agent.record(reward=np.zeros(1, np.float32), cost=np.zeros((1, 1), np.float32))
         self.assertGreater(agent.update(np.zeros((1, 1), np.float32)).passes, 0)  # not without the recording: start_steps
+
+    def test_decisions_of_another_length_are_refused(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / "set.npz"
+            recorded().save(path)
+            with np.load(path) as file:
+                np.savez(path, metadata=np.array(json.dumps({"action_repeat": 4})), **file)
+            recording = redman.load(path)
+        with self.assertRaisesRegex(redman.ArgumentError, "a decision of 4 control steps, but one of the agent has 2.*'action_repeat': 4"):
+            learner(action_repeat=2).learn_from(recording, 1)
+        whole = redman.Recording(obs_dim=1, action_dim=1, cost_dim=1)
+        whole.append(copy.deepcopy(recording))
+        with self.assertRaisesRegex(redman.ArgumentError, "a decision of 4"):
+            learner().learn_from(whole, 1)
+        learner(action_repeat=4).learn_from(recording, 1)
+        learner(action_repeat=2).learn_from(recorded(), 1)  # rows of arrays do not say it
 
     def test_refusals(self):
         agent = learner()

@@ -3,8 +3,10 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import json
 import os
 import threading
+import zipfile
 from ctypes import byref, c_int64
 from typing import TYPE_CHECKING, Any, Iterator, Mapping, Optional, Union
 
@@ -84,6 +86,7 @@ class Recording(Hinted):
 
     def _own(self, handle: Handle) -> None:
         self._handle = handle
+        self._repeat: Optional[int] = None  # control steps of a row, where its file says it
         self._lock = threading.RLock()
         info = self.info
         self.obs_dim, self.action_dim, self.cost_dim, self.task = info.obs_dim, info.action_dim, info.cost_dim, info.task
@@ -95,6 +98,7 @@ class Recording(Hinted):
         out = cls.__new__(cls)
         out._stride = 8
         out._own(Handle(lib.rdm_recording_read_file, lib.rdm_recording_destroy, encoded(path, "path")))
+        out._repeat = _repeat_of(path)
         return out
 
     def save(self, path: Union[str, os.PathLike[str]]) -> None:
@@ -146,7 +150,9 @@ class Recording(Hinted):
             instance(other, Recording, "other", "; arrays are append(obs=..., action=...)")
             first, second = sorted((self, other), key=id)
             with first._lock, second._lock:
+                empty = not len(self)
                 check(lib.rdm_recording_append_all(self._handle.value, other._handle.value))
+                self._repeat = other._repeat if empty or self._repeat == other._repeat else None
             return
         if obs is None or action is None:
             raise ArgumentError("append: give a recording, or obs and action")
@@ -271,14 +277,25 @@ class Recording(Hinted):
             return {"sizes": {"obs_dim": info.obs_dim, "action_dim": info.action_dim, "cost_dim": info.cost_dim,
                               "task": info.task, "layout_hash": info.layout_hash, "state_bytes": info.state_bytes,
                               "num_points": info.num_points, "state_stride": self._stride},
-                    "rows": self.arrays()}
+                    "rows": self.arrays(), "repeat": self._repeat}
 
     def __setstate__(self, saved: Mapping[str, Any]) -> None:
         rows = dict(saved["rows"])
         Recording.__init__(self, **saved["sizes"], point_color="point_color" in rows)
         if len(rows["obs"]):
             self.append(**rows)
+        self._repeat = saved.get("repeat")
 
     def __repr__(self) -> str:
         info = self.info
         return f"<Recording of {info.task or 'worlds of your own'}: {info.rows} rows, {info.episodes} episodes>"
+
+
+def _repeat_of(path: Union[str, os.PathLike[str]]) -> Optional[int]:
+    """The control steps of a row of a data set, which `redman data make` keeps in the metadata; None: unknown."""
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            repeat = json.loads(str(file["metadata"]))["action_repeat"]
+    except (OSError, ValueError, KeyError, TypeError, zipfile.BadZipFile):
+        return None
+    return repeat if isinstance(repeat, int) else None

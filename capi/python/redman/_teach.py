@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import ctypes
 from ctypes import byref
-from typing import Any, Callable, Optional, Sequence
+from typing import TYPE_CHECKING, Any, Callable, Mapping, Optional, Sequence
 
 import numpy as np
 
 from . import _abi
-from ._error import RangeError
+from ._error import ArgumentError, RangeError
 from ._library import assign, check, flag, instance, lib, real, sized, whole
+from ._options import Value
 from ._policy import Backup, policy_of
 from ._recording import Recording
 from ._rows import DoubleArray, FloatArray, array_of, clouds, given, wrong_shape
@@ -81,6 +82,10 @@ class Taught:
     _config: dict[str, Any]
     _recording: Optional[Recording]
 
+    if TYPE_CHECKING:
+        @property
+        def options(self) -> Mapping[str, Value]: ...
+
     def clone(self, recording: Recording, *, epochs: int = 30, batch_rows: int = 512, patience: int = 5,
               learning_rate: float = 1e-3, learning_rate_end: float = 1e-5, validation: float = 0.1, action_std: float = 0.0,
               seed: int = 0, feed_normalizer: bool = True) -> CloneReport:
@@ -109,11 +114,15 @@ class Taught:
     def learn_from(self, recording: Recording, steps: int) -> LearnReport:
         """Learns from a recording alone, without a world: `steps` gradient steps of an algorithm with a replay memory, such as
         td3_bc_lag; 0 only fills its memory. Option replay_rows must hold the rows, and the longest episode once more for each
-        environment. A row of the recording is one decision of the agent (action_repeat). The first call fills the memory and
-        sets the statistics of observations; further calls with the same recording continue. UnsupportedError for other
-        algorithms."""
+        environment. A row of the recording is one decision of the agent: ArgumentError if the file of the recording, of `redman
+        data make`, says another action_repeat. The first call fills the memory and sets the statistics of observations; further
+        calls with the same recording continue. UnsupportedError for other algorithms."""
         instance(recording, Recording, "recording", _READ)
         steps = whole(steps, "steps", -(1 << 63), (1 << 63) - 1)
+        own, its = self.options["action_repeat"], recording._repeat
+        if its is not None and its != own:
+            raise ArgumentError(f"learn_from: a row of the recording is a decision of {its} control steps, but one of the agent has {own}: make "
+                                f"the agent with options={{'action_repeat': {its}}}")
         report = sized(_abi.rdm_learn_report)
         with self._lock, recording._lock:
             try:
