@@ -33,6 +33,11 @@ class Latent(unittest.TestCase):
             self.assertLess(loss[-1], 0.75 * loss[0])  # at first no history tells the delay
             self.assertEqual(student.policy.info.state_dim, 7)
 
+    def test_it_needs_a_teacher(self):
+        for student in ({"latent_from": "history"}, {"latent-from": "History"}):
+            with self.subTest(student), self.assertRaisesRegex(redman.UsageError, "latent_from=history makes a student.*from_="):
+                redman.train("lqr_line", algo="ppo", options={**LATENT, **student, "history": 8})
+
     def test_its_policy_does_not_read_what_is_drawn(self):
         pool = redman.Pool("lqr_line", num_envs=4, seed=2, options=WORLDS)
         pool.reset()

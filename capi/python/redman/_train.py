@@ -334,6 +334,9 @@ def _wanted(given: Mapping[str, Any]) -> Settings:
     if teach is not None and "replay_rows" in _discovery.algo(algo).options:
         raise UsageError(f"from_: {algo} cannot begin with a teacher; only algorithms without a replay memory can, such as "
                          "algo=\"ppo_lag\". Agent.learn_from lets an agent with a replay memory learn from a recording")
+    usual = _discovery.task(name).defaults.get("latent_from", "")
+    if given["from_"] is None and folded(str({folded(key): value for key, value in of_algo}.get("latent_from", usual))) == "history":
+        raise UsageError("latent_from=history makes a student, which starts from its teacher: give from_= a policy or run folder")
     if teach is not None and not teach.acts:
         of_task = [*teach.task_options(name), *of_task]
         of_algo = [*teach.algo_options(of_algo), *of_algo]
