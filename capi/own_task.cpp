@@ -578,6 +578,15 @@ void OwnTask::take_options() {
           (kind != OptionKind::kNumber && o.number != std::floor(o.number)))
         fail(Code::kRange, "def.options[%d].number: %s of %s is outside [%s, %s], or not an integer", i,
              Number(o.number).text, o.key, Number(made.low).text, Number(made.high).text);
+      if (o.text && made.range) {  // read as a pool will, so that a wrong one is told here
+        Options trial;
+        trial.add_table(&made, 1);
+        trial.set({made.key, o.text, 0}, RowName("options", i, "text").text);
+        made.text = texts_.keep(o.text);
+      } else if (o.text) {
+        fail(Code::kArgument,
+             "def.options[%d].text of %s: only a text, or a number that takes a range, has one", i, o.key);
+      }
     }
     if (row)
       *row = made;

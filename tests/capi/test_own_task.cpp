@@ -342,6 +342,15 @@ TEST(OwnTask, OptionsMayBeRanges) {
   rdm_pool* p = nullptr;
   EXPECT_EQ(rdm_pool_create(&p, &c), RDM_ERROR_RANGE);
   EXPECT_STREQ(rdm_last_error(), "task own_ranges: build: not the range that was given");
+  {  // a default may be one as well
+    BallTask ranged("own_ranged");
+    ranged.options[0].choices = "a..b", ranged.options[0].text = "0.5..2";
+    ranged.def.build = t.def.build;
+    const Registered by_default(ranged.def);
+    ASSERT_EQ(rdm_task_option_at(by_default.index(), 0, &option), RDM_OK);
+    EXPECT_STREQ(option.text, "0.5..2");
+    Rows("own_ranged", 1);
+  }
   // of an option that every task has, each world draws by itself
   Rows heavy("own_ranges", 2, 0, "push=0.5..2\ngravity=5..15"), plain("own_ranges", 2, 0, "push=0.5..2");
   heavy.step(20);

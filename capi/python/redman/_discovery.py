@@ -12,8 +12,8 @@ from . import _abi
 from ._abi import OptionKind, OptionLevel
 from ._error import NotFoundError, UsageError
 from ._library import check, encoded, filled, forget_raised, lib, sized
-from ._names import folded, nearest
-from ._options import Value, default_of, laid, shown
+from ._names import nearest
+from ._options import Value, default_of, laid
 from ._paths import is_file, named
 from ._record import Record
 
@@ -146,11 +146,6 @@ class TaskInfo(_abi.Task):
                 ("option", Option, _abi.rdm_option_spec, lib.rdm_task_option_at, self.num_options),
                 ("camera", Camera, _abi.rdm_camera_info, lib.rdm_task_camera_at, self.num_cameras)):
             said[f"{what}s"] = Named(_records(kind, struct, call, count, index), what, self.name)
-        from ._own_task import ranges_of
-        ranges = {folded(key): pair for key, pair in ranges_of(index).items()}
-        for key, option in self.options.items():
-            if folded(key) in ranges:
-                option.__dict__.update(dict.fromkeys(("text", "default"), shown(key, ranges[folded(key)])))
         said["defaults"] = laid(
             filled(_abi.rdm_option, lib.rdm_task_default_at, index, i) for i in range(self.num_defaults))
 

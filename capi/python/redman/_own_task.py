@@ -13,7 +13,7 @@ from ._abi import OptionKind
 from ._error import ArgumentError, UsageError
 from ._library import assign, check, encoded, guarded, lib, sized
 from ._names import nearest
-from ._options import option_array
+from ._options import option_array, shown
 from ._scene import SceneBuilder
 from ._worlds_rows import Worlds
 
@@ -273,8 +273,8 @@ class _Description:
     def _option(self, row: Any, key: str, value: Any) -> None:
         row.key, row.help = encoded(key, f"{self.where}.options"), encoded(f"of {self.where}", "help")
         if _pair(value):
-            row.kind, row.choices = OptionKind.NUMBER, b"a..b"
-            row.number = (value[0] + value[1]) / 2  # the library's default; that of a pool is the range, by ranges_of
+            row.kind, row.choices, row.text = OptionKind.NUMBER, b"a..b", encoded(shown(key, value), key)
+            row.number = (value[0] + value[1]) / 2
         elif isinstance(value, bool):
             row.kind, row.number = OptionKind.FLAG, int(value)
         elif isinstance(value, int):
@@ -413,9 +413,3 @@ class _Description:
 
 
 _descriptions: dict[int, _Description] = {}
-
-
-def ranges_of(number: int) -> dict[str, tuple[float, float]]:
-    """The options of a task whose default is a range, which its pools have unless others are given."""
-    described = _descriptions.get(number)
-    return {} if described is None else {key: (value[0], value[1]) for key, value in described.kind.options.items() if _pair(value)}

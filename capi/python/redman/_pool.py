@@ -19,7 +19,7 @@ from ._html import image, number, table
 from ._hold import LAST, Watch
 from ._library import (Handle, assign, check, encoded, failure, filled, instance, int32, lib, raised, raw, real, sized, text,
                        whole)
-from ._names import Hinted, folded, keywords, nearest, one_of
+from ._names import Hinted, keywords, nearest, one_of
 from ._options import Options, Told, Value, as_dict, read_settings, settings_of
 from ._paths import by_name, named_options
 from ._returned import Returned
@@ -60,20 +60,11 @@ def _struct(own: Mapping[str, Any]) -> _abi.rdm_pool_config:
     config.task = encoded(_discovery.task_name(own["task"]), "task")
     assign(config, {"num_envs": own["num_envs"], "seed": own["seed"], "num_threads": own["threads"]})
     config.autoreset = _autoreset(own["autoreset"])
-    config.settings = _settings(own["task"], own["options"])
+    config.settings = settings_of(named_options(own["options"]), _kinds(own["task"]) if own["options"] else {})
     return config
 
 
-def _settings(task: _discovery.TaskName, options: Options) -> bytes:
-    """The options of a pool, with the ranges that the task's class has as defaults."""
-    from ._own_task import ranges_of
-    given = {folded(key) for key in options}
-    ranges = ranges_of(_discovery.find(lib.rdm_task_find, _discovery.task_name(task)))
-    options = {**{key: pair for key, pair in ranges.items() if folded(key) not in given}, **options}
-    return settings_of(named_options(options), _kinds(task) if options else {})
-
-
-def _kinds(task: _discovery.TaskName) -> dict[str, int]:
+def _kinds(task: str) -> dict[str, int]:
     """The kind of each option of a task."""
     return {key: option.kind for key, option in _discovery.task(task).options.items()}
 
@@ -100,7 +91,8 @@ def check_task(task: _discovery.TaskName, options: Optional[Options] = None) -> 
     within their fields and bounds, costs of 0 or more. ArgumentError names function, step and entry of the first broken
     promise. Takes seconds; for .task files and tasks of your own. options: those of the task that is tried."""
     name = _discovery.task_name(task)
-    check(lib.rdm_task_check(encoded(name, "task"), _settings(name, as_dict(options)), _abi.rdm_stop(0), None, None, 0))
+    settings = settings_of(named_options(as_dict(options)), _kinds(name) if options else {})
+    check(lib.rdm_task_check(encoded(name, "task"), settings, _abi.rdm_stop(0), None, None, 0))
 
 
 class Guard(_abi.Guard):
