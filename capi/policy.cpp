@@ -83,7 +83,7 @@ void copy_groups(const PolicyView& v, const PolicyTensor& t, float* out) {
   size_t row = 0, col = 0;  // where the group's own begin
   for (int32_t i = 0; i < v.num_groups; ++i) {
     const ActorGroup& g = v.group[i];
-    const bool remembers = last && g.gru.units;
+    const bool remembers = last && v.has_gru();
     const MlpShape layer = remembers ? g.net().head() : g.shape;
     const int32_t l = remembers ? 0 : t.layer;
     const auto rows = static_cast<size_t>(layer.layer_out(l)), in = static_cast<size_t>(layer.layer_in(l));
@@ -164,7 +164,7 @@ void copy_tensor(const PolicyView& v, const PolicyTensor& t, float* out) {
   }
   if (t.millimetres || t.numbers || t.history) return;
   if (t.layer >= 0) return copy_groups(v, t, out);
-  if (t.of_gru >= 0) return copy_group_memories(v, t, out);
+  if (kStatesAndPoints && t.of_gru >= 0) return copy_group_memories(v, t, out);
   if (t.reads) return copy_first_layer(v, t, out);
   if (!t.part) {
     std::copy(t.data, t.data + size, out);
@@ -188,7 +188,7 @@ bool eyes_tensor_at(const PolicyView& v, int32_t i, PolicyTensor* out) {
                                             "encoder.3.bias"};
   const PointNetShape& eyes = v.eyes;
   const MlpShape& s = eyes.mlp;
-  if (!eyes.points) return false;
+  if (!v.has_eyes()) return false;
   if (i < 2 * s.num_layers()) {
     const int32_t l = i / 2;
     const bool weight = i % 2 == 0;
@@ -237,7 +237,7 @@ bool latent_tensor_at(const PolicyView& v, int32_t i, PolicyTensor* out) {
 
 // The tensors of a policy with a memory.
 int32_t memory_tensors(const PolicyView& v) {
-  return v.history > 1 ? 1 : v.gru.units ? 4 : 0;
+  return kStatesAndPoints && v.history > 1 ? 1 : v.has_gru() ? 4 : 0;
 }
 bool memory_tensor_at(const PolicyView& v, int32_t i, PolicyTensor* out) {
   const GruShape& g = v.gru;
@@ -277,14 +277,14 @@ bool tensor_at(const PolicyView& v, int32_t i, PolicyTensor* out) {
     if (v.num_groups) {
       const auto all = [&](int32_t of_one) { return v.num_groups * of_one; };
       const int32_t rows = l == s.num_hidden ? s.out : all(s.layer_out(l)),
-                    cols = l == s.num_hidden && v.gru.units ? v.state_dim()
+                    cols = l == s.num_hidden && v.has_gru() ? v.state_dim()
                            : l == 0                         ? s.in
                                                             : all(s.layer_in(l));
       *out = {i % 2 ? kBiases[l] : kWeights[l], nullptr, rows, i % 2 ? 1 : cols};
       out->layer = l, out->weights = i % 2 == 0;
       return true;
     }
-    if (v.gru.units && l == s.num_hidden) {
+    if (v.has_gru() && l == s.num_hidden) {
       const MlpShape head = v.net().head();
       const float* const at = v.params + v.net().head_offset();
       if (i % 2)
@@ -422,7 +422,7 @@ void need_rows(int32_t rows) {
 }
 // Acts with a policy that does not read points.
 void need_blind(const Policy& policy) {
-  if (policy.view().eyes.points)
+  if (policy.view().has_eyes())
     fail(Code::kState, "policy: it reads points; call %s",
          policy.view().state_dim() ? "rdm_policy_act_points_state" : "rdm_policy_act_points");
 }
@@ -646,7 +646,7 @@ struct FieldDifference {
   char text[256] = "";
 };
 
-FieldDifference difference_of(const PolicyView& v, const rdm_spec& s) {
+FieldDifference difference_of(const PolicyView& v, [[maybe_unused]] const rdm_spec& s) {
 #if RDM_WITH_SIM
   const KnownLayout known(s.layout_hash);
   return {v, known.fields(), known.count()};

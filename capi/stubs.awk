@@ -8,7 +8,7 @@
 function half_of(name, parameters) {
   if (names && name ~ /^rdm_(clone|pretrain)_/) return learn ? "" : "learning"
   if (names && name ~ /^rdm_(fail|rotation)$/) return sim ? "" : "simulation"
-  if (names && !sim && !learn && name ~ /^rdm_(actor_|policy_act_points$)/) return "learning"
+  if (names && !sim && !learn && name ~ /^rdm_(actor_|policy_(act_points|act_state|act_points_state|group_name|write_group)$)/) return "learning"
   if (!names && name ~ /^rdm_(pool|agent)_config_init$/) return ""
   if (name ~ /^rdm_recording_/) return !sim && parameters ~ /rdm_pool/ ? "simulation" : sim || learn ? "" : "learning"
   if (name ~ /^rdm_agent_/ && parameters ~ /rdm_(pool|shield)/) return sim ? (learn ? "" : "learning") : "simulation"

@@ -24,6 +24,10 @@ if(REDMAN_COVERAGE)
   target_link_options(rdm_flags INTERFACE --coverage)
 endif()
 
+if(REDMAN_POLICY AND NOT REDMAN_SIM AND NOT REDMAN_LEARN AND NOT REDMAN_STUBS)
+  target_compile_definitions(rdm_flags INTERFACE RDM_POLICIES_ALONE)
+endif()
+
 # Most of what a small file takes to compile are the headers that all of its layer read. A build that is made once lets
 # many files share them; one that is edited three, so that an edit stays quick. The numerical kernels stay alone: what a
 # compiler inlines depends on what else it sees.

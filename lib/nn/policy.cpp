@@ -75,10 +75,10 @@ ActScratch cut_act_scratch(const PolicyView& v, int32_t rows, void* memory) {
     largest.out = std::max(largest.out, v.group[g].shape.out);
   }
   s.mlp = cut_forward_scratch(cutter, largest, rows);
-  s.memory = cut_recurrent_scratch(cutter, v.net(), rows);
+  if constexpr (kStatesAndPoints) s.memory = cut_recurrent_scratch(cutter, v.net(), rows);
   s.obs = cutter.make(sz(rows) * sz(shape.in));
-  if (v.eyes.points) s.eyes = cut_pointnet_scratch(cutter, v.eyes);
-  if (v.eyes.points || v.history > 1 || v.latent) s.row = cutter.make(sz(rows) * sz(v.entries()));
+  if (v.has_eyes()) s.eyes = cut_pointnet_scratch(cutter, v.eyes);
+  if (v.has_eyes() || v.history > 1 || v.latent) s.row = cutter.make(sz(rows) * sz(v.entries()));
   if (v.latent) {
     s.latent = cut_forward_scratch(cutter, v.latent.mlp, rows);
     s.stacked = cutter.make(sz(rows) * sz(v.entries() + v.history_inputs()));
@@ -155,7 +155,7 @@ void act_group(const PolicyView& v, int32_t i, const float* x, int32_t rows, con
     pick_columns(x, rows, v.obs_dim(), g.columns, g.shape.in, s.seen);
     x = s.seen;
   }
-  if (g.gru.units) {
+  if (v.has_gru()) {
     const size_t units = sz(g.gru.units), all = sz(v.state_dim()), at = sz(i) * units;
     take_states(state, all, at, units, rows, s.state);
     recurrent_forward(g.net(), params, x, 1, rows, s.state, nullptr, s.mlp, s.memory, s.part);
@@ -190,9 +190,10 @@ void act_view(const PolicyView& v, const float* obs, const PointRows& clouds, in
       const int32_t step = v.latent ? v.entries() + v.history_inputs() : v.actor.in;
       for (size_t i = 0; i < sz(n); ++i)
         std::copy_n(x + i * sz(v.entries()), v.entries(), seen + i * sz(step));
-      if (v.history > 1) remember(v, x, n, state + sz(at) * sz(v.state_dim()), seen, step);
+      if (kStatesAndPoints && v.history > 1)
+        remember(v, x, n, state + sz(at) * sz(v.state_dim()), seen, step);
       if (v.latent) see_latent(v, n, s);
-      if (v.eyes.points)
+      if (v.has_eyes())
         pointnet_forward(v.eyes, v.eyes_params, clouds.from(v.eyes, sz(at)), n, s.eyes,
                          s.obs + v.actor.in - v.eyes.features(), sz(v.actor.in), nullptr);
       x = s.obs;
@@ -203,7 +204,7 @@ void act_view(const PolicyView& v, const float* obs, const PointRows& clouds, in
       act_outputs(v, y, n, noise ? noise + sz(at) * dim : nullptr, to);
       continue;
     }
-    if (v.gru.units) {
+    if (v.has_gru()) {
       float* const h = state + sz(at) * sz(v.gru.units);
       recurrent_forward(v.net(), v.params, x, 1, n, h, nullptr, s.mlp, s.memory, y);
       std::copy_n(s.memory.h, sz(n) * sz(v.gru.units), h);
@@ -622,9 +623,14 @@ void read_parts(const void* bytes, size_t size, PolicyParts& parts) {
   read_arch(in, v.actor);
   if (version > 1) read_head(in, v);
   const bool more = version == kEyesAndMore;
-  if (version == 4 || version == 5 || more) read_eyes(in, v, version);
+  if (!kStatesAndPoints && (in.find_section("EYES") || in.find_section("MEMO")))
+    fail(Code::kUnsupported,
+         "%s: its policy has a memory or reads points, which a library of policies alone does not run",
+         kWhat);
+  if (kStatesAndPoints && (version == 4 || version == 5 || more)) read_eyes(in, v, version);
   if (version == 10 || (more && in.find_section("LATN"))) read_latent(in, parts);
-  if (version == 7 || version == 9 || (version >= 10 && in.find_section("MEMO"))) read_memory(in, parts);
+  if (kStatesAndPoints && (version == 7 || version == 9 || (version >= 10 && in.find_section("MEMO"))))
+    read_memory(in, parts);
   if (v.latent) check_latent(parts);
   if (more && !sees_and_more(v)) bad("it has neither a history nor a latent beside its points");
   if (version == 8) read_squash(in, v);
@@ -752,7 +758,7 @@ void act_example(const PolicyView& v, const float* obs, const PointRows& cloud, 
 
 // A NaN of one point would be hidden by the maximum over points, so the encoder's sums are bounded instead.
 bool sums_stay_finite(const PointNetShape& eyes, const float* params) {
-  return !eyes.points || mlp_bound(eyes.mlp, params, largest_point(eyes)) <= kMaxSum;
+  return !kStatesAndPoints || !eyes.points || mlp_bound(eyes.mlp, params, largest_point(eyes)) <= kMaxSum;
 }
 
 // The check that needs the finished network: it must reproduce the example action of the file.

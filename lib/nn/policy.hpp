@@ -26,6 +26,14 @@ inline constexpr char kPolicyMagic[8] = {'R', 'D', 'M', 'P', 'O', 'L', 'I', 'C'}
 inline constexpr uint32_t kPolicyVersion = 11;
 inline constexpr int32_t kMaxHistory = 1024;
 
+// A library of policies alone has no calls that take states or points (capi/stubs.awk): it refuses such policies, and the
+// networks that only they have are not linked.
+#ifdef RDM_POLICIES_ALONE
+inline constexpr bool kStatesAndPoints = false;
+#else
+inline constexpr bool kStatesAndPoints = true;
+#endif
+
 // Everything that a policy file holds, as views of memory that somebody else owns.
 struct PolicyView {
   MlpShape
@@ -76,7 +84,11 @@ struct PolicyView {
   RecurrentShape net() const { return {actor, gru}; }
   size_t num_params() const { return num_groups ? group_params(group, num_groups) : net().num_params(); }
   int32_t history_inputs() const { return (history - 1) * history_width; }
-  int32_t state_dim() const { return gru.units * std::max(num_groups, 1) + history_inputs(); }
+  int32_t state_dim() const {
+    return kStatesAndPoints ? gru.units * std::max(num_groups, 1) + history_inputs() : 0;
+  }
+  bool has_gru() const { return kStatesAndPoints && gru.units; }
+  bool has_eyes() const { return kStatesAndPoints && eyes.points; }
   // of a row, that it sees
   int32_t entries() const { return latent ? latent.entries : actor.in - eyes.features() - history_inputs(); }
   int32_t obs_dim() const { return columns ? row_dim : entries(); }

@@ -56,6 +56,11 @@ runner shared "$include" "-L$lib" -lredman "-Wl,-rpath,$lib"
 runner archive "$include" "$lib/libredman.a" -lm
 runner own "$include" -static-libgcc -Wl,--gc-sections "$lib/libredman.a" -lm
 runner static "$include" -static -Wl,--gc-sections "$lib/libredman.a" -lm
+# it has no call that takes a state
+"$full/bin/redman" train --task hand_over_safe_finger --envs 4 --steps 256 --seed 0 --set memory=gru:8 --set horizon=64 --out "$work/gru" > "$work/log" 2>&1 ||
+  { cat "$work/log"; exit 1; }
+if "$work/shared" "$work/gru/policy.rdm" 1 2> "$work/said"; then wrong "a policy with a memory is read"; fi
+grep -q 'has a memory or reads points, which' "$work/said" || wrong "it says of a policy with a memory: $(cat "$work/said")"
 only_libc "$work/archive" libgcc_s.so.1 # the unwinder
 only_libc "$work/own"
 # beside a C++ runtime of the program's own
