@@ -181,6 +181,10 @@ HandControl::HandControl(const HandControlConfig& config, const Options& o, cons
     force_ = kSourceStep * 1e5 * base_.transition_scale;
     torque_ = kSourceStep * 1e3 * base_.orientation_scale;
   }
+  // in the order, so that a policy is refused where the same entries mean something else
+  const char* const by = options_.control == HandDrive::kVelocity ? " by velocity"
+                         : options_.control == HandDrive::kTorque ? " by torque"
+                                                                  : "";
   size_t at = 0;
   bool any_led = false;
   for (int32_t i = 0; i < count_; ++i) {
@@ -203,14 +207,15 @@ HandControl::HandControl(const HandControlConfig& config, const Options& o, cons
     q_WR_[i] = (hands[i].X_WB * robot.X_BR).q;
     first_entry_[i + 1] = first_entry_[i] + h.num_entries() + (flying_[i] ? kBaseActions : 0);
     first_command_[i + 1] = first_command_[i] + h.num_actions;
-    const char* format = !flying_[i]         ? "%s%s %sjoints"
-                         : base_.paper_order ? "%s%s %sjoints, force, torque"
-                                             : "%s%s %sforce, torque, joints";
+    const char* format = !flying_[i]         ? "%s%s %sjoints%s"
+                         : base_.paper_order ? "%s%s %sjoints%s, force, torque"
+                                             : "%s%s %sforce, torque, joints%s";
     at += static_cast<size_t>(std::snprintf(order_ + at, sizeof order_ - at, format, i > 0 ? ", " : "",
                                             kSideNames[i],
                                             h.led            ? "palm velocity, palm angular velocity, "
                                             : hands[i].armed ? "arm, "
-                                                             : ""));
+                                                             : "",
+                                            by));
     any_led = any_led || h.led;
     if (!hands[i].own || hands[i].armed)  // alike in numbers, but another robot
       at += static_cast<size_t>(std::snprintf(order_ + at, sizeof order_ - at, " of %s", robot.name));

@@ -95,6 +95,16 @@ TEST_F(HandControlTest, LegacyOrderIsTheSameMotion) {
             layout_hash(TestPool(kFlying, 1, {{"action_order", "legacy", 0}})->task()));
 }
 
+TEST_F(HandControlTest, ControlIsAPartOfTheLayoutWhereItIsNotThatOfOldFiles) {
+  const auto order = [](const char* control) {
+    return std::string(TestPool(kFlying, 1, {{"control", control, 0}})->task().action_order());
+  };
+  EXPECT_EQ(order("position"), "right joints, force, torque, left joints, force, torque");
+  EXPECT_EQ(order("velocity"),
+            "right joints by velocity, force, torque, left joints by velocity, force, torque");
+  EXPECT_EQ(order("torque"), "right joints by torque, force, torque, left joints by torque, force, torque");
+}
+
 TEST_F(HandControlTest, ABlowIsSlowedAndTheReachIsKept) {
   TestPool p(kFlying, 1,
              {{"base_limit", nullptr, 10}, {"base_reach", nullptr, 0.05}, {"start.x", nullptr, 3}});
