@@ -145,6 +145,23 @@ Trainer begin_run(TrainFlags flags, const Ranks* ranks) {
   return trainer;
 }
 
+// Says that a run which goes on here may not come to the bytes that it would have had.
+void say_other_build(const std::string& folder, const RunSettings& run) {
+  auto b = redman::sized<rdm_build>();
+  redman::check(rdm_build_info(&b));
+  std::string was, is;
+  const auto compare = [&](const char* what, const std::string& before, const char* now) {
+    if (before.empty() || before == now) return;
+    was += (was.empty() ? "" : ", ") + (what + before);
+    is += (is.empty() ? "" : ", ") + (what + std::string(now));
+  };
+  compare("version ", run.version, b.version);
+  compare("kernels ", run.kernels, b.kernels);
+  if (!was.empty())
+    std::fprintf(stderr, "%s: it was trained with %s, here is %s: results differ from an unbroken run's\n",
+                 printable(folder).c_str(), printable(was).c_str(), is.c_str());
+}
+
 Trainer go_on(const TrainFlags& flags, const Ranks* ranks) {
   if (flags.others_given)
     throw Usage(
@@ -157,6 +174,7 @@ Trainer go_on(const TrainFlags& flags, const Ranks* ranks) {
     throw Failure(
         flags.resume +
         ": its reward or its costs are functions in Python: continue it with redman.train(resume=...) there");
+  if (folder) say_other_build(flags.resume, run);
   if (flags.steps_given) run.steps = whole_number(flags.steps, "--steps");
   if (flags.threads_given) run.pool.threads = flags.run.pool.threads;
   Trainer trainer(run, ranks);

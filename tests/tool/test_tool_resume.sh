@@ -47,4 +47,11 @@ status=$?
 grep -q 'train --resume stopped' err || { echo "after SIGINT there is no note: $(cat err)"; failed=1; }
 "$tool" train --resume stopped > /dev/null 2> err || { echo "resume failed: $(cat err)"; failed=1; }
 same whole stopped 'stopped by SIGINT'
+
+# Another version or other kernels: the run goes on, and a line says what that means.
+if grep -q 'trained with' err; then echo "the same build is another one: $(cat err)"; failed=1; fi
+sed -i 's/"version": "[^"]*"/"version": "0.9.7"/; s/"kernels": "[^"]*"/"kernels": "abacus"/' stopped/config.json
+"$tool" train --resume stopped > /dev/null 2> err || { echo "resume failed: $(cat err)"; failed=1; }
+grep -q 'stopped: it was trained with version 0.9.7, kernels abacus, here is version .*: results differ' err ||
+  { echo "nothing is said of another version: $(cat err)"; failed=1; }
 exit $failed

@@ -177,6 +177,11 @@ RunSettings parse_config(const char* text, size_t size) {
   if (train.contains("shield")) s.shield = shield_at(train, "shield");
   if (train.contains("tensorboard")) s.events = flag_at(train, "tensorboard");
   if (json.contains("task_class")) s.task_class = text_at(json, "task_class");
+  if (json.contains("build")) {
+    const Document& build = object_at(json, "build");
+    if (build.contains("version")) s.version = text_at(build, "version");
+    if (build.contains("kernels")) s.kernels = text_at(build, "kernels");
+  }
   s.functions = json.contains("own_reward") || json.contains("own_costs");
   if (json.contains("own_costs")) s.limits.clear();
   return s;

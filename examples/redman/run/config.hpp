@@ -30,6 +30,7 @@ struct RunSettings {
   // task; whether its reward or its costs are functions there. `limits` is empty where its costs are.
   std::string task_class;
   bool functions = false;
+  std::string version, kernels;  // of the library that began it or went on with it last; "": unknown
 };
 
 // The text of the file. `pool`, `agent` and the shield (null: none) say what the options came to; limits [cost_dim].
