@@ -15,6 +15,7 @@
 #include <cstdio>
 #include <cstring>
 #include <ctime>
+#include <optional>
 
 #include "base/file_within.hpp"
 
@@ -76,17 +77,22 @@ int folder_length(const char* path) {
   return slash ? static_cast<int>(slash + 1 - path) : 0;
 }
 
-// The file that `path` leads to through links, which need not exist; Error(kIo) when it is there and not a
-// regular file.
-void find_target(const char* path, char target[PATH_MAX]) {
+// The file that `path` leads to through links, which need not exist, and its permissions if it does; Error(kIo) when it
+// is there and not a regular file, or may not be written.
+std::optional<mode_t> find_target(const char* path, char target[PATH_MAX]) {
+  if (*path == '\0') fail(Code::kArgument, "path: it is empty");
   if (std::snprintf(target, PATH_MAX, "%s", path) >= PATH_MAX) too_long_path();
   for (int links = 0; links < 40; ++links) {
     struct stat st {};
     if (lstat(target, &st) != 0) {
-      if (errno == ENOENT) return;  // new; or its folder is missing, which shows when it is made
+      if (errno == ENOENT) return {};  // new; or its folder is missing, which shows when it is made
       refuse(path, "look at it", errno);
     }
-    if (S_ISREG(st.st_mode)) return;
+    if (S_ISREG(st.st_mode)) {
+      // a rename asks for the right to change the folder alone
+      if (access(target, W_OK) != 0) refuse(path, "write", errno);
+      return st.st_mode & 0777;
+    }
     if (!S_ISLNK(st.st_mode))
       fail(Code::kIo, "%s: it is not a regular file; folders, devices and pipes are not replaced", path);
     char aim[PATH_MAX], next[PATH_MAX];
@@ -112,14 +118,14 @@ uint64_t unpredictable() {
          static_cast<uint64_t>(getpid());
 }
 
-// Makes <target>.tmp-<hex> and locks it: a locked one is being written, wherever its writer runs, and one
+// Makes <target>.tmp-<hex> with permissions `mode` and locks it: a locked one is being written, wherever its writer runs, and one
 // without a lock is litter.
-int make_temporary(const char* target, char temporary[PATH_MAX]) {
+int make_temporary(const char* target, mode_t mode, char temporary[PATH_MAX]) {
   for (int tries = 0; tries < 100; ++tries) {
     if (std::snprintf(temporary, PATH_MAX, "%s%s%016llx", target, kMark,
                       static_cast<unsigned long long>(unpredictable())) >= PATH_MAX)
       too_long_path();
-    const int fd = open(temporary, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    const int fd = open(temporary, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode);
     if (fd < 0 && errno != EEXIST) return -1;
     if (fd < 0) continue;
     // a process that sweeps may have come between: then the lock or the name is lost
@@ -213,15 +219,17 @@ Vector<unsigned char> read_file(const char* path, const FileLimits& limits) {
 
 void write_file(const char* path, const void* data, size_t size) {
   char target[PATH_MAX], temporary[PATH_MAX];
-  find_target(path, target);
+  const std::optional<mode_t> kept = find_target(path, target);
   sweep(target);
-  const Descriptor f(make_temporary(target, temporary));
+  const Descriptor f(make_temporary(target, kept.value_or(0666), temporary));
   if (f.fd < 0) fail(Code::kIo, "%s: cannot create: %s", temporary, std::strerror(errno));
   const auto give_up = [&](const char* what) {
     const int why = errno;
     unlink(temporary);
     refuse(path, what, why);
   };
+  // what the umask took; where that cannot be, fewer may read the new file than the old one
+  if (kept) fchmod(f.fd, *kept);
   const auto* p = static_cast<const unsigned char*>(data);
   for (size_t at = 0; at < size;) {
     const NoSizeSignal quiet;

@@ -63,7 +63,8 @@ class MemorySource : public ByteSource {
 };
 
 // Writes <path>.tmp-<16 hex digits>, syncs, renames, syncs the folder. A link stays, what it leads to is
-// replaced. On Error(kIo) (full disk, file-size limit, no right, not a regular file) the old file is
+// replaced by one with the same permissions. On Error(kIo) (full disk, file-size limit, no right to write the
+// file or its folder, not a regular file) the old file is
 // untouched and the temporary one is gone; those that killed processes left beside it are removed.
 void write_file(const char* path, const void* data, size_t size);
 

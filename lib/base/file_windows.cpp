@@ -154,6 +154,7 @@ Vector<unsigned char> read_file(const char* path, const FileLimits& limits) {
 }
 
 void write_file(const char* path, const void* data, size_t size) {
+  if (*path == '\0') fail(Code::kArgument, "path: it is empty");
   const std::wstring name = wide(path);
   need_file_or_nothing(path, name);
   sweep(name);

@@ -72,6 +72,31 @@ TEST_F(File, ReplacingIsByANewFile) {
   EXPECT_EQ(std::string(old.begin(), old.end()), "old");
 }
 
+TEST_F(File, WhatIsReplacedKeepsItsPermissions) {
+  for (const mode_t mode : {0600u, 0666u, 0640u}) {
+    write("old");
+    ASSERT_EQ(chmod(path.c_str(), mode), 0);
+    write("new");
+    struct stat after {};
+    ASSERT_EQ(stat(path.c_str(), &after), 0);
+    EXPECT_EQ(after.st_mode & 07777, mode);
+  }
+}
+
+TEST_F(File, WhatMayNotBeWrittenStays) {
+  write("old");
+  ASSERT_EQ(chmod(path.c_str(), 0444), 0);
+  ASSERT_EQ(chmod(folder.c_str(), 0777), 0);
+  EXPECT_EQ(child([&] {
+              if (geteuid() == 0 && setuid(65534) != 0) return false;  // root may write everything
+              return guard([&] { write("new"); }) == Code::kIo &&
+                     std::string(last_error()).find("cannot write: Permission denied") != std::string::npos;
+            }),
+            0);
+  EXPECT_EQ(content(), "old");
+  EXPECT_EQ(files(), 1u);
+}
+
 // A file-size limit refuses the write as a full disk does, part of the way through.
 TEST_F(File, FullDiskKeepsTheOldFileAndLeavesNoLitter) {
   write("old");
@@ -240,6 +265,8 @@ TEST_F(File, FailedRenameLeavesNoLitter) {
 }
 
 TEST_F(File, MissingAndWrongPaths) {
+  EXPECT_EQ(guard([&] { write_file("", "x", 1); }), Code::kArgument);
+  EXPECT_STREQ(last_error(), "path: it is empty");
   EXPECT_EQ(guard([&] { read_file(path.c_str(), kAny); }), Code::kNotFound);
   EXPECT_NE(std::string(last_error()).find("policy.rdm"), std::string::npos);
   EXPECT_EQ(guard([&] { read_file(folder.c_str(), kAny); }), Code::kIo);

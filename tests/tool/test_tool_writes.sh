@@ -36,13 +36,15 @@ writers | { while read -r command; do
     [ $? -eq 1 ] && grep -q 'not a regular file' err || say "$command $file: $(cat err)"
     [ "$(stat -c '%F %t' $file)" = "$before" ] || say "$command turned $file into $(stat -c %F $file)"
   done
-  # a link is followed: the file it leads to gets the content
+  # a link is followed: the file it leads to gets the content and keeps its permissions
   rm -f link aim
   echo old > aim
+  chmod 600 aim
   ln -s aim link
   # shellcheck disable=SC2086
   "$tool" $command link > out 2> err || say "$command link: $(cat err)"
   [ -L link ] && [ "$(cat aim)" != old ] || say "$command: the link was replaced, not what it leads to"
+  [ "$(stat -c %a aim)" = 600 ] || say "$command: a file of mode 600 got $(stat -c %a aim)"
   # a link under the temporary name is not
   echo precious > victim
   # shellcheck disable=SC2086

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "common/names.hpp"
@@ -33,10 +34,14 @@ std::string target_of(const std::string& path) {
   return at.string();
 }
 
-void check_target(const std::string& path, const std::string& target) {
+// The permissions of what is replaced; none where there is nothing.
+std::optional<mode_t> check_target(const std::string& path, const std::string& target) {
   struct stat s {};
-  if (stat(target.c_str(), &s) == 0 && !S_ISREG(s.st_mode))
-    throw Failure("cannot write " + path + ": it is not a regular file");
+  if (stat(target.c_str(), &s) != 0) return {};
+  if (!S_ISREG(s.st_mode)) throw Failure("cannot write " + path + ": it is not a regular file");
+  // a rename asks for the right to change the folder alone
+  if (access(target.c_str(), W_OK) != 0) throw Failure("cannot write " + path + ": " + std::strerror(errno));
+  return s.st_mode & 0777;
 }
 
 uint64_t random_number() {
@@ -142,15 +147,19 @@ std::string read_file(const std::string& path, size_t most) {
 }
 
 PreparedFile::PreparedFile(const std::string& path) : path_(path), target_(target_of(path)) {
-  check_target(path_, target_);
+  const std::optional<mode_t> kept = check_target(path_, target_);
   sweep_temporaries(target_, false);
   do {
     temporary_ =
         target_ + kTemporary +
         format("%d-%016llx", static_cast<int>(getpid()), static_cast<unsigned long long>(random_number()));
-    file_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+    file_ =
+        open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, kept.value_or(0666));
   } while (file_ < 0 && errno == EEXIST);
   if (file_ < 0) give_up(errno);
+#if !defined(_WIN32)
+  if (kept) fchmod(file_, *kept);  // what the umask took
+#endif
   flock(file_, LOCK_EX | LOCK_NB);  // best effort: says that the writer lives
 }
 
