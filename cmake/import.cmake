@@ -1,5 +1,5 @@
 # redman_import: robots out of files, on the public headers and on lib/base, whose objects it carries. The shared one stands
-# on libredman.so; the static one takes whichever redman the program links.
+# on libredman.so; the static one takes whichever redman the program links behind it.
 if(NOT REDMAN_SIM OR REDMAN_IMPORT STREQUAL "OFF" OR RDM_IMPORT_MISSING)
   return()
 endif()

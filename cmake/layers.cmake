@@ -217,11 +217,16 @@ function(rdm_export target)
   set_property(TARGET ${target} APPEND PROPERTY LINK_DEPENDS ${map})
 endfunction()
 
-# rdm_archive(target): a plugin that links this static library exports none of its names.
+# rdm_archive(target): a plugin that links this static library exports none of its names; a project in C links it.
 function(rdm_archive target)
   get_target_property(name ${target} OUTPUT_NAME)
   target_compile_definitions(${target} INTERFACE RDM_STATIC)
   target_link_options(${target} INTERFACE $<$<PLATFORM_ID:Linux>:LINKER:--exclude-libs,lib${name}.a>)
+  # a project without C++ links what the compiler of C++ would add
+  if(NOT RDM_STANDALONE_ARCHIVE)
+    target_link_libraries(${target} INTERFACE $<$<LINK_LANGUAGE:C>:$<IF:$<PLATFORM_ID:Darwin>,c++,stdc++>>)
+  endif()
+  target_link_libraries(${target} INTERFACE $<$<LINK_LANGUAGE:C>:m>)
 endfunction()
 
 # rdm_library(target STATIC|SHARED) from the objects of all layers.
@@ -244,11 +249,6 @@ function(rdm_library target kind)
                redman_experimental:REDMAN_EXPERIMENTAL_${RDM_VERSION_MAJOR}_${RDM_VERSION_MINOR})
   else()
     rdm_archive(${target})
-    # a project without C++ links what the compiler of C++ would add
-    if(NOT RDM_STANDALONE_ARCHIVE)
-      target_link_libraries(${target} INTERFACE $<$<LINK_LANGUAGE:C>:$<IF:$<PLATFORM_ID:Darwin>,c++,stdc++>>)
-    endif()
-    target_link_libraries(${target} INTERFACE $<$<LINK_LANGUAGE:C>:m>)
   endif()
 endfunction()
 

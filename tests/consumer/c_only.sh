@@ -11,7 +11,9 @@ build() { # build NAME OPTIONS...
   shift
   "$cmake" -S "$here/c_only" -B "$out/$name" -DCMAKE_C_COMPILER="$cc" -DCMAKE_CXX_COMPILER="$cxx" "$@" > "$out.log" 2>&1 &&
     "$cmake" --build "$out/$name" -j 2 >> "$out.log" 2>&1 || { cat "$out.log"; exit 1; }
-  "$out/$name/use_c"
+  for program in use_c import_c; do
+    [ ! -e "$out/$name/$program" ] || "$out/$name/$program"
+  done
 }
 build package -DCMAKE_PREFIX_PATH="$prefix"
 build subdirectory -DREDMAN_TREE="$tree" -DREDMAN_SIM=OFF -DREDMAN_LEARN=OFF -DREDMAN_SHARED=OFF
