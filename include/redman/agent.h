@@ -64,7 +64,8 @@ RDM_API rdm_result rdm_agent_config_init(rdm_agent_config *c, size_t size);
 /* Sets dims, num_envs, task, layout_hash, control_dt, max_steps, defaults, initial_mean,
  * cost_limits and fields from a pool. Pointers are borrowed from the pool. */
 RDM_API rdm_result rdm_agent_config_for_pool(rdm_agent_config *c, const rdm_pool *p);
-/* Bytes that creation takes from the alloc hook, exact. */
+/* Bytes that the agent holds of the alloc hook's memory, exact; creation never holds more. The hook
+ * is called here too, for less, and gets all of it back. */
 RDM_API rdm_result rdm_agent_config_memory(const rdm_agent_config *c, size_t *bytes);
 /* Makes the agent; the config's arrays are copied. */
 RDM_API rdm_result rdm_agent_create(rdm_agent **out, const rdm_agent_config *c);

@@ -168,7 +168,8 @@ typedef struct rdm_option_spec { /* one row of an option table */
 } rdm_option_spec;
 /* Member `settings` of a config holds options as one text of lines `key=value`. Spaces around keys
  * and values, '\r' and empty lines are ignored. Settings override the config's `options`, and later
- * lines override earlier ones; an error names the line. NULL: no settings. */
+ * lines override earlier ones. The error for a line that is no key=value names the line; errors for
+ * keys and values name the key. NULL: no settings. */
 /* Writes to text [capacity] the hint that texts of NOT_FOUND end with, for names of your own: ";
  * nearest is gamma", "; nearest are a, b and c" for several that are equally near, or "" when
  * `name` resembles none of `names`, which has one name a line; the first 500 count. Case is ignored

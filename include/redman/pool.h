@@ -176,8 +176,8 @@ RDM_API rdm_result rdm_pool_create(rdm_pool **out, const rdm_pool_config *c);
 /* The same in memory [bytes] at any address: at least *ours of rdm_pool_config_memory, else RANGE,
  * and the text says how many are needed. The pool uses the memory until it is destroyed; the caller
  * owns it throughout. Neither alloc hook nor C library are asked for memory, now or later, except
- * by the physics engine and, for threads, by the system; what rdm_pool_set_starts keeps must fit
- * into what is left (MEMORY). */
+ * by the physics engine, for threads by the system, and in clean_house by OctoMap for its map
+ * (0.9 MB); what rdm_pool_set_starts keeps must fit into what is left (MEMORY). */
 RDM_API rdm_result rdm_pool_create_in(rdm_pool **out, const rdm_pool_config *c, void *memory,
                                       size_t bytes);
 RDM_API void rdm_pool_destroy(rdm_pool *p);                 /* NULL is fine */
@@ -260,9 +260,10 @@ RDM_API rdm_result rdm_pool_baseline(rdm_pool *p, int32_t kind);
  * what rdm_sensors shows, and clears the other rows of that world but terminated, truncated and
  * episode_status; sums and steps of its episode go on with the next step. FORMAT for bytes that are
  * truncated, of another task or other options, or hold values that no world can have; nothing
- * changes then. The bytes are meant for files and other processes. For snapshots within a process,
- * as to go back some steps, copy worlds into a second pool by rdm_pool_copy: in a task of hands
- * that takes a thirtieth of the time. */
+ * changes then. Only action_repeat, sense_every and the options of images, clouds of points and
+ * voxel grids may differ. The bytes are meant for files and other processes. For snapshots within a
+ * process, as to go back some steps, copy worlds into a second pool by rdm_pool_copy: in a task of
+ * hands that takes a thirtieth of the time. */
 RDM_API rdm_result rdm_pool_write_state(const rdm_pool *p, int32_t env, void *bytes,
                                         size_t capacity, size_t *size); /* to bytes [capacity];
                                                                          * NULL asks for the

@@ -37,9 +37,9 @@
  *     the parent.
  *   - A handle of another kind is an ARGUMENT, and so is a destroyed one as long as its memory has
  *     not been used again; destroying either does nothing.
- *   - Structs begin with struct_size, the sizeof of the struct that you compiled with: set it
- *     yourself or by the _init function. ARGUMENT for a size below that of the first version or
- *     above 4096, and for a reserved member that is not 0.
+ *   - A struct begins with struct_size, the sizeof of the struct that you compiled with, unless its
+ *     comment says "frozen layout": set it yourself or by the _init function. ARGUMENT for a size
+ *     below that of the first version or above 4096, and for a reserved member that is not 0.
  *   - Robots, objects and tasks, the library's own and those of a host, are identified by numbers.
  *     The number of one that was destroyed gives NOT_FOUND everywhere, and is not used again before
  *     2^31 others were made; its memory is freed. To list all, ask for 0 to _count() - 1 and skip

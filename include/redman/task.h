@@ -323,7 +323,7 @@ RDM_API rdm_result rdm_random_split(rdm_random *random, rdm_random *out);
  * every machine, which those from a C library's sine are not. */
 RDM_API rdm_result rdm_rotation(const double axis[3], double angle, double q[4]);
 
-typedef struct rdm_verdict { /* what judge fills; zeroed before */
+typedef struct rdm_verdict { /* frozen layout: what judge fills; zeroed before */
   double reward;           /* of the step */
   double cost[RDM_MAX_COSTS];     /* each column of the step, 0 or more */
   double cost_raw[RDM_MAX_COSTS]; /* the measured value behind each */

@@ -3976,7 +3976,7 @@ class rdm_random(Structure):
 
 
 class Verdict(Record):
-    """what judge fills; zeroed before
+    """frozen layout: what judge fills; zeroed before
 
     reward: of the step
     cost: each column of the step, 0 or more
@@ -3993,7 +3993,7 @@ class Verdict(Record):
 
 
 class rdm_verdict(Structure):
-    """what judge fills; zeroed before
+    """frozen layout: what judge fills; zeroed before
 
     reward: of the step
     cost: each column of the step, 0 or more
@@ -4832,8 +4832,8 @@ FUNCTIONS: dict[str, Function] = {
         """The same in memory [bytes] at any address: at least *ours of rdm_pool_config_memory, else RANGE,
         and the text says how many are needed. The pool uses the memory until it is destroyed; the caller
         owns it throughout. Neither alloc hook nor C library are asked for memory, now or later, except
-        by the physics engine and, for threads, by the system; what rdm_pool_set_starts keeps must fit
-        into what is left (MEMORY).
+        by the physics engine, for threads by the system, and in clean_house by OctoMap for its map
+        (0.9 MB); what rdm_pool_set_starts keeps must fit into what is left (MEMORY).
         """),
     "rdm_pool_destroy": Function(
         None, {"p": c_void_p},
@@ -5041,7 +5041,9 @@ FUNCTIONS: dict[str, Function] = {
     "rdm_agent_config_memory": Function(
         c_int32, {"c": POINTER(rdm_agent_config), "bytes": c_void_p},
         {}, False,
-        """Bytes that creation takes from the alloc hook, exact."""),
+        """Bytes that the agent holds of the alloc hook's memory, exact; creation never holds more. The hook
+        is called here too, for less, and gets all of it back.
+        """),
     "rdm_agent_create": Function(
         c_int32, {"out": POINTER(c_void_p), "c": POINTER(rdm_agent_config)},
         {}, False,
