@@ -57,6 +57,7 @@ expect 2 'WIDTHxHEIGHT' render --size 64
 expect 2 '' eval --episodes 0
 expect 1 'no such file' eval --policy nothing.rdm
 expect 1 'not a run folder' train --resume nothing
+expect 1 'dev/null is not a run folder: it is no folder$' train --resume /dev/null
 expect 1 'holds no run' plot nothing
 printf 'not a policy' > bad.rdm
 expect 1 'bad.rdm' eval --policy bad.rdm

@@ -148,6 +148,8 @@ RunFolder RunFolder::create_default(const RunSettings& settings) {
 }
 
 RunFolder RunFolder::go_on(const std::string& path) {
+  if (std::error_code error; fs::exists(path, error) && !is_folder(path))
+    throw Failure(path + " is not a run folder: it is no folder");
   if (!file_exists(path + "/config.json"))
     throw Failure(
         path + " is not a run folder: " +
