@@ -137,6 +137,23 @@ class Objects(Folder):
         self.removed(redman.load_object((self.folder / "my_box.object").read_bytes()))
 
 
+class Written(Folder):
+    @unittest.skipIf(os.name == "nt", "modes and links of POSIX")
+    def test_a_replaced_file_keeps_its_permissions(self):
+        path, link = self.folder / "p.rdm", self.folder / "link.rdm"
+        link.symlink_to(path)
+        policy = redman.Policy.trained("two_state")
+        policy.save(path)
+        for name in (path, link):
+            path.chmod(0o600)
+            path.write_bytes(b"old")
+            policy.save(name)
+            self.assertEqual((path.stat().st_mode & 0o777, path.read_bytes()), (0o600, bytes(policy)))
+        self.assertTrue(link.is_symlink())
+        with self.assertRaisesRegex(redman.FileError, "not a regular file"):
+            policy.save("/dev/null")
+
+
 @needs_importer
 class Files(Folder):
     def test_a_robot_of_a_file_tells_what_was_guessed(self):

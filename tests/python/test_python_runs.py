@@ -140,6 +140,14 @@ class AsTheTool(Folders):
             redman.train(resume=each, steps=5000, progress=False)
         self.assertEqual(rows(a), rows(b))
 
+    def test_another_version_is_told(self):
+        run = self.path("run")
+        redman.train(TASK, **SMALL, out=run)
+        config = Path(run, "config.json")
+        config.write_text(config.read_text().replace(f'"version": "{redman.version}"', '"version": "0.9.7"'))
+        with self.assertWarnsRegex(RuntimeWarning, "trained with version 0.9.7, here is version"):
+            redman.train(resume=run, progress=False)
+
     def test_a_recording_teaches_the_same(self):
         demo = self.path("demo.npz")
         with redman.Pool(TASK, 8, seed=1) as pool:

@@ -7,7 +7,7 @@ import itertools
 import os
 import stat
 from pathlib import Path
-from typing import Union
+from typing import Optional, Union
 
 from ._error import FileError, MissingFileError
 from ._library import encoded
@@ -66,12 +66,32 @@ def read_whole(path: Union[str, os.PathLike[str]], what: str, most: int = MOST_B
         raise FileError(f"{what} {os.fspath(path)}: {error.strerror}") from None
 
 
-def write_whole(path: Union[str, os.PathLike[str]], data: bytes, what: str) -> None:
-    """Writes a file entirely or leaves the old one: writes under another name first."""
-    temporary = Path(f"{as_path(path)}.part")
+def _mode_of(path: Path) -> Optional[int]:
+    """The permissions of a file that is to be replaced, None where there is none. OSError if it may not be."""
     try:
-        temporary.write_bytes(data)
-        os.replace(temporary, path)
+        said = path.stat()
+    except FileNotFoundError:
+        return None
+    if not stat.S_ISREG(said.st_mode):
+        raise OSError(errno.EINVAL, "it is not a regular file")
+    if not os.access(path, os.W_OK):  # a replacement asks for the right to change the folder alone
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
+    return said.st_mode & 0o777
+
+
+def write_whole(path: Union[str, os.PathLike[str]], data: bytes, what: str) -> None:
+    """Writes a file entirely or leaves the old one: writes under another name first. A file that is replaced keeps its permissions;
+    of a link, what it leads to is replaced."""
+    target = Path(os.path.realpath(as_path(path)))
+    temporary = Path(f"{target}.part")
+    try:
+        mode = _mode_of(target)
+        how = os.O_WRONLY | os.O_CREAT | os.O_TRUNC | getattr(os, "O_BINARY", 0)
+        with open(os.open(temporary, how, 0o666 if mode is None else mode), "wb") as file:
+            file.write(data)
+        if mode is not None:
+            os.chmod(temporary, mode)  # what the umask took
+        os.replace(temporary, target)
     except OSError as error:
         with contextlib.suppress(OSError):
             temporary.unlink()

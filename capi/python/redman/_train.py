@@ -6,6 +6,7 @@ import inspect
 import math
 import os
 import tempfile
+import warnings
 from itertools import product
 from pathlib import Path
 from typing import Any, List, Mapping, Optional, Sequence, Tuple, TypeVar, Union, overload
@@ -370,11 +371,23 @@ def _continued(given: Mapping[str, Any]) -> Settings:
         raise UsageError(f"resume: its settings are those of the folder, {', '.join(odd)} too; {', '.join(_OF_RESUME[:5])} may "
                          f"be given. A new run that begins with its policy is train(..., from_={folder!r})")
     settings = settings_of_folder(folder, Own.wanted(given["reward"], given["costs"]))
+    warn_of_another_build(folder)
     if given["steps"] is not None:
         settings.steps = _steps(given["steps"])
     if given["threads"] is not None:
         settings.threads = all_cores(given["threads"], settings.envs)
     return settings
+
+
+def warn_of_another_build(folder: FolderPath) -> None:
+    """Warns if the run began with another version or other kernels: it may not come to the bytes that it would have had."""
+    began, now = read_config(folder).get("build"), vars(_discovery.build())
+    if isinstance(began, dict):
+        other = [name for name in ("version", "kernels") if began.get(name, now[name]) != now[name]]
+        if other:
+            said = [", ".join(f"{name} {of[name]}" for name in other) for of in (began, now)]
+            warnings.warn(f"run {os.fspath(folder)}: it was trained with {said[0]}, here is {said[1]}: results differ from an unbroken "
+                          "run's", RuntimeWarning, stacklevel=4)
 
 
 def settings_of_folder(folder: FolderPath, own: Optional[Own] = None) -> Settings:
