@@ -135,7 +135,7 @@ short() {
       head = "| algorithm |"; rule = "|---|"
       for (i = 1; i <= m; ++i) { head = head " `" column[i] "`" (limit[column[i]] >= 0 ? " (" limit[column[i]] ")" : "") " |"; rule = rule "---|" }
       print head; print rule
-      na = split("ppo ppo+predict trpo ppo_lag trpo_lag cppo_pid cpo pcpo focops p3o ipo", algo, " ")
+      na = split("ppo ppo+predict ppo+project trpo ppo_lag trpo_lag cppo_pid cpo pcpo focops p3o ipo", algo, " ")
       for (j = 1; j <= na; ++j) { if (!(algo[j] in known)) continue
         line = "| `" algo[j] "` |"
         for (i = 1; i <= m; ++i) { k = column[i] SUBSEP algo[j]
