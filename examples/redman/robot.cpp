@@ -12,12 +12,6 @@ namespace {
 
 constexpr const char* kKinds[] = {"other", "hand", "arm"};
 
-double mass_of(const rdm_robot_def& def) {
-  double sum = def.root_mass;
-  for (int32_t i = 0; i < def.num_links; ++i) sum += def.links[i].mass;
-  return sum;
-}
-
 struct RobotsFlags {
   bool markdown = false;
 };
@@ -62,6 +56,8 @@ Report report_robot(const RobotFlags& flags) {
   check_outputs({{"--out", flags.out, ".robot"}}, {{"the robot that is read", flags.file}});
   const Import import = import_robot(flags.file, flags.import);
   const rdm_robot_def def = def_of(import);
+  double mass = def.root_mass;
+  for (int32_t i = 0; i < def.num_links; ++i) mass += def.links[i].mass;
   if (flags.check && rdm_import_check(import.get()) != RDM_OK)
     throw Failure(flags.file + ": " + rdm_import_error());
   static constexpr const char* kLists[] = {"dropped", "changed", "guessed", "check"};
@@ -84,7 +80,7 @@ Report report_robot(const RobotFlags& flags) {
     if (def.curves[i].driver != def.curves[i].link) --driven;
   text += format("%s: %s, %d joints, %d driven, %d shapes, %.4g kg\n\n", def.name,
                  def.kind ? kKinds[def.kind] : "neither hand nor arm", def.num_links, driven, def.num_shapes,
-                 mass_of(def)) +
+                 mass) +
           table.text();
   for (int32_t kind = RDM_NOTE_DROPPED; kind <= (flags.check ? RDM_NOTE_CHECK : RDM_NOTE_GUESSED); ++kind) {
     std::string part;
@@ -102,10 +98,10 @@ Report report_robot(const RobotFlags& flags) {
     text += "\ncheck: it holds its home pose, reaches the ends of its ranges and does not touch itself\n";
   Json fingers = Json::array();
   for (int32_t i = 0; i < def.num_fingers; ++i) fingers.push_back(def.fingers[i].name);
-  Json json = {{"name", def.name},        {"kind", kKinds[def.kind]}, {"links", def.num_links},
-               {"joints", def.num_links}, {"driven", driven},         {"shapes", def.num_shapes},
-               {"mass", mass_of(def)},    {"fingers", fingers},       {"dropped", lists[0]},
-               {"changed", lists[1]},     {"guessed", lists[2]}};
+  Json json = {
+      {"name", def.name},    {"kind", kKinds[def.kind]}, {"links", def.num_links}, {"joints", def.num_links},
+      {"driven", driven},    {"shapes", def.num_shapes}, {"mass", mass},           {"fingers", fingers},
+      {"dropped", lists[0]}, {"changed", lists[1]},      {"guessed", lists[2]}};
   if (flags.check) json["check"] = lists[3];
   if (!flags.out.empty()) {
     replace_file(flags.out, robot_text(def));
