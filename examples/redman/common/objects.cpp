@@ -74,30 +74,23 @@ int32_t load_object_text(const std::string& text, const std::string& where) {
   return add(kObject, object_def_of(import_object_text(text, where)), where);
 }
 #else
-namespace {
-[[noreturn]] void without() {
-  throw Failure(
-      "this tool was built without the readers of objects: install libtinyxml2-dev and libtomlplusplus-dev "
-      "and configure with -DREDMAN_IMPORT=ON");
-}
-}  // namespace
 Import import_object(const std::string&) {
-  without();
+  without_readers();
 }
 Import import_object_text(const std::string&, const std::string&) {
-  without();
+  without_readers();
 }
 rdm_object_def object_def_of(const Import&) {
-  without();
+  without_readers();
 }
 std::string object_text(const rdm_object_def&) {
-  without();
+  without_readers();
 }
 int32_t load_object(const std::string&) {
-  without();
+  without_readers();
 }
 int32_t load_object_text(const std::string&, const std::string&) {
-  without();
+  without_readers();
 }
 #endif
 

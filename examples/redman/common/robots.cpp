@@ -101,29 +101,26 @@ std::string robot_text(const rdm_robot_def& def) {
   return text_of(kRobot, def);
 }
 #else
-namespace {
-[[noreturn]] void without() {
+void without_readers() {
   throw Failure(
-      "this tool was built without the readers of robots; install libtinyxml2-dev and libtomlplusplus-dev "
-      "and "
-      "configure with -DREDMAN_IMPORT=ON");
+      "this tool was built without the readers of robots and objects; install libtinyxml2-dev and "
+      "libtomlplusplus-dev and configure with -DREDMAN_IMPORT=ON");
 }
-}  // namespace
 void ImportDelete::operator()(rdm_import*) const {}
 Import import_robot(const std::string&, const ImportFlags&) {
-  without();
+  without_readers();
 }
 rdm_robot_def def_of(const Import&) {
-  without();
+  without_readers();
 }
 int32_t load_robot(const std::string&) {
-  without();
+  without_readers();
 }
 int32_t load_robot_text(const std::string&, const std::string&) {
-  without();
+  without_readers();
 }
 std::string robot_text(const rdm_robot_def&) {
-  without();
+  without_readers();
 }
 #endif
 

@@ -27,6 +27,9 @@ struct ImportFlags {
   double density = 0, slide_range = 0;
 };
 
+#ifndef REDMAN_IMPORT
+[[noreturn]] void without_readers();  // Failure: this tool has none
+#endif
 // Failure with line and element. Or, for the name of a robot that is there and no file, that robot.
 Import import_robot(const std::string& file, const ImportFlags& flags);
 rdm_robot_def def_of(const Import& import);
