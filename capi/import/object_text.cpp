@@ -67,9 +67,7 @@ struct Writer {
       for (int32_t k = 0; k < s.num_points; ++k) out += "  " + list(s.points + 3 * k, 3) + ",\n";
       out += "]\n";
     } else {
-      double size[3] = {};
-      std::copy_n(s.size, size_count(s.kind), size);
-      numbers("size", size, 3, kNone);
+      numbers("size", used_size(s.kind, s.size).data(), 3, kNone);
     }
     numbers("p", s.pose.p, 3, kNone);
     const bool none = s.pose.q[0] == 0 && s.pose.q[1] == 0 && s.pose.q[2] == 0 && s.pose.q[3] == 0;

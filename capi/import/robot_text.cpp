@@ -251,9 +251,7 @@ struct Writer {
       refuse(RDM_ERROR_RANGE, "def.shapes: kind %d of %s cannot be part of a robot", s.kind,
              clean(s.name).c_str());
     line("kind", quoted(kind));
-    double size[3] = {};
-    std::copy_n(s.size, size_count(s.kind), size);
-    numbers("size", size, 3);
+    numbers("size", used_size(s.kind, s.size).data(), 3);
     numbers("p", s.pose.p, 3);
     turn("q", s.pose.q);
     line("color", format("[%d, %d, %d]", s.color[0], s.color[1], s.color[2]));

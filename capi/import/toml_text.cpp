@@ -194,6 +194,7 @@ int32_t shape_kind(const Table& t, int32_t count) {
   return kShapes[static_cast<size_t>(t.choice("kind", names, count, 0))].kind;
 }
 
+namespace {
 size_t size_count(int32_t kind) {
   switch (kind) {
     case RDM_SHAPE_SPHERE:
@@ -207,6 +208,14 @@ size_t size_count(int32_t kind) {
     default:
       return 0;
   }
+}
+
+}  // namespace
+
+std::array<double, 3> used_size(int32_t kind, const double size[3]) {
+  std::array<double, 3> used{};
+  std::copy_n(size, size_count(kind), used.begin());
+  return used;
 }
 
 void read_size(const Table& t, int32_t kind, double size[3]) {

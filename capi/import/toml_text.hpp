@@ -22,6 +22,7 @@ struct ParserFault {};  // what the parser takes to be impossible is not: it mus
 #endif
 #include <toml++/toml.h>
 
+#include <array>
 #include <initializer_list>
 
 namespace rdm::import {
@@ -93,7 +94,8 @@ inline constexpr NamedKind kShapes[] = {
     {"hull", RDM_SHAPE_HULL}};
 inline constexpr int32_t kRobotShapes = 5;
 int32_t shape_kind(const Table& t, int32_t count);
-size_t size_count(int32_t kind);  // how many numbers of a shape's size count
+// A shape's size as it is written: 0 where the kind has no number, so that read_size takes it.
+std::array<double, 3> used_size(int32_t kind, const double size[3]);
 // [3] of "size"; 0 of a hull, which has points, and of a plane. What the kind has no use for is refused.
 void read_size(const Table& t, int32_t kind, double size[3]);
 // [3] of "color", each in [0, 255]; false: it is not there.

@@ -117,7 +117,9 @@ Report run_eval(EvalFlags flags) {
   std::optional<DataSet> set;
   if (!flags.data.empty()) {
     set = read_set(flags.data);
-    need_same_worlds(*set, flags.data, make_pool(flags.pool, RDM_AUTORESET_SAME_STEP).spec());
+    PoolSettings one = flags.pool;  // one world says what all are
+    one.envs = 1, one.threads = 0;
+    need_same_worlds(*set, flags.data, make_pool(one, RDM_AUTORESET_OFF).spec());
   }
   const Evaluation e = evaluate(choice, flags.pool, choice.limits, flags.episodes, flags.stochastic);
   say_trouble(e.summary.trouble, "eval");
