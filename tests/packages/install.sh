@@ -21,6 +21,9 @@ pages=$(find "$prefix" -name manual -type d)
 # Its links lead to what is there.
 for page in $(find "$pages/.." -name '*.md' -type f); do
   for target in $(sed '/^```/,/^```/d' "$page" | grep -o '](\([^() ]*\))' | sed 's/^](//; s/)$//; s/#.*//' | grep -v '^[a-z]*:'); do
+    case $target in  # a build without the importers has no header of theirs
+      */redman/import.h) [ -n "$(find "$prefix" -name 'libredman_import*')" ] || continue ;;
+    esac
     [ -e "$(dirname "$page")/$target" ] || wrong "$page: a link to $target"
   done
 done
