@@ -219,6 +219,13 @@ void need_same_settings(const SweepFlags& flags, const std::vector<Cell>& cells)
   }
 }
 
+struct Ran {
+  bool stopped = false;             // the time was over before all of it
+  size_t elsewhere = 0;             // runs that other sweeps trained meanwhile
+  std::vector<std::string> failed;  // run: its last words
+};
+
+#if !defined(_WIN32)
 std::vector<std::string> command_of(const SweepFlags& flags, const Cell& c) {
   std::vector<std::string> words = {path_of_program(), "train", "--json"};
   for (const std::string& plugin : own_files(c.task).plugins) words.insert(words.end(), {"--plugin", plugin});
@@ -237,13 +244,6 @@ std::vector<std::string> command_of(const SweepFlags& flags, const Cell& c) {
   return words;
 }
 
-struct Ran {
-  bool stopped = false;             // the time was over before all of it
-  size_t elsewhere = 0;             // runs that other sweeps trained meanwhile
-  std::vector<std::string> failed;  // run: its last words
-};
-
-#if !defined(_WIN32)
 void make_run_folders(const std::string& path) {
   for (size_t at = path.find('/', 1); at != std::string::npos; at = path.find('/', at + 1))
     mkdir(path.substr(0, at).c_str(), 0777);
