@@ -9,7 +9,9 @@ function(rdm_example target)
     target_compile_options(${target} PRIVATE -Wno-format -Wno-format-extra-args)
   endif()
   if(REDMAN_SANITIZE)
-    target_compile_options(${target} PRIVATE -fsanitize=${REDMAN_SANITIZE} -fno-omit-frame-pointer)
+    # GCC takes members of <regex> for uninitialised once they are instrumented
+    target_compile_options(${target} PRIVATE -fsanitize=${REDMAN_SANITIZE} -fno-omit-frame-pointer
+                           $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   endif()
 endfunction()
 
