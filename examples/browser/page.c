@@ -385,10 +385,22 @@ EXPORT const char* page_hash(const char* task, const char* engine) {
 }
 
 /* The hash of a line of tests/golden/learners.txt: an agent after three epochs. */
+/* Algorithms with a replay memory have other options: both lists are those of tests/algos/test_golden_learners.cpp. */
+static int has_replay(const char* name) {
+  rdm_algo algo = RDM_INIT(rdm_algo);
+  rdm_option_spec option = RDM_INIT(rdm_option_spec);
+  int32_t index = 0;
+  if (rdm_algo_find(name, &index) || rdm_algo_at(index, &algo)) return 0;
+  for (int32_t i = 0; i < algo.num_options; ++i)
+    if (!rdm_algo_option_at(index, i, &option) && !strcmp(option.key, "replay_rows")) return 1;
+  return 0;
+}
 EXPORT const char* page_learner_hash(const char* algo, const char* task) {
+  const char* settings = has_replay(algo) ? "hidden=32,16\nhorizon=24\nreplay_rows=900\nbatch_rows=300\n"
+                                            "start_steps=100\nupdates_per_step=0.03"
+                                          : "hidden=32,16\nhorizon=24\npasses=2\nminibatches=2";
   size_t size = 0;
-  int good =
-      page_learn(task, algo, 16, 7, 11, "hidden=32,16\nhorizon=24\npasses=2\nminibatches=2", NULL) == 0;
+  int good = page_learn(task, algo, 16, 7, 11, settings, NULL) == 0;
   for (int i = 0; good && i < 3; ++i) good = rdm_agent_rollout(agent, class_pool, NULL) == RDM_OK;
   if (!good || rdm_agent_write_state(agent, NULL, 0, &size)) return NULL;
   void* bytes = malloc(size);
