@@ -2,8 +2,8 @@
 # release.sh [MODE...]: what `check.sh release` runs: the modes of check.sh, all of them unless some are given, in a clean copy of
 # the commit. Then it makes the files to publish, and writes one page: what passed, on which machine, in what time, and the hash of
 # each file. It can be stopped and called again: a mode that has passed for this commit is not run again. Nor is one that has a row
-# in examples/results/release.csv, also from another machine, if only documents have changed since the row's commit; modes that read
-# documents need a row of this commit.
+# in examples/results/release.csv, also from another machine, if nothing that the mode looks at has changed since the row's commit;
+# modes that read documents need a row of this commit.
 #   build/published/COMMIT/README.md   the page         build/published/COMMIT/MODE.log   what a mode said
 #   build/published/COMMIT/files/      source archive, .deb files, wheel, policies, SHA256SUMS
 #   build/published/COMMIT/release.csv the rows, to be copied to examples/results and committed
@@ -27,11 +27,14 @@ mkdir -p "$files"
 git -C "$copy" fetch -q "$PWD" HEAD || die "cannot fetch $commit"
 { git -C "$copy" checkout -q -f "$commit" && git -C "$copy" clean -qfd; } || die "cannot check out $commit"
 
-# holds COMMIT MODE: what passed at that commit still does, since nothing that the mode looks at has changed.
+# holds COMMIT MODE: what passed at that commit still does, since nothing that the mode looks at has changed. The page for a browser is
+# built by its own mode alone, and this script by none.
+documents=(':!*.md' ':!examples/results' ':!examples/pictures' ':!cmake/release.sh')
 holds() {
   case $2 in
     quick | dev | small | physics | packages | pages) [ "$1" = "$commit" ] ;;
-    *) git diff --quiet "$1" "$commit" -- . ':!*.md' ':!examples/results' ':!examples/pictures' 2> /dev/null ;;
+    browser) git diff --quiet "$1" "$commit" -- . "${documents[@]}" 2> /dev/null ;;
+    *) git diff --quiet "$1" "$commit" -- . "${documents[@]}" ':!examples/browser' 2> /dev/null ;;
   esac
 }
 
@@ -91,7 +94,7 @@ done
 {
   echo "# redman $version"
   echo
-  echo "$good of $number jobs passed, in $((sum / 3600)) h $((sum / 60 % 60)) min, builds included. Commit \`$commit\`; a job with another commit ran there, and only documents have changed since."
+  echo "$good of $number jobs passed, in $((sum / 3600)) h $((sum / 60 % 60)) min, builds included. Commit \`$commit\`; a job with another commit ran there, and nothing that it looks at has changed since: documents have, or the page of examples/browser, which \`browser\` alone builds."
   echo
   echo "$(. /etc/os-release && echo "$PRETTY_NAME"); $(c++ --version | head -n1). Machines:"
   echo
