@@ -384,7 +384,6 @@ EXPORT const char* page_hash(const char* task, const char* engine) {
   return good ? put_hash(join(&state, sizeof state, hash)) : NULL;
 }
 
-/* The hash of a line of tests/golden/learners.txt: an agent after three epochs. */
 /* Algorithms with a replay memory have other options: both lists are those of tests/algos/test_golden_learners.cpp. */
 static int has_replay(const char* name) {
   rdm_algo algo = RDM_INIT(rdm_algo);
@@ -395,6 +394,7 @@ static int has_replay(const char* name) {
     if (!rdm_algo_option_at(index, i, &option) && !strcmp(option.key, "replay_rows")) return 1;
   return 0;
 }
+/* The hash of a line of tests/golden/learners.txt: an agent after three epochs. */
 EXPORT const char* page_learner_hash(const char* algo, const char* task) {
   const char* settings = has_replay(algo) ? "hidden=32,16\nhorizon=24\nreplay_rows=900\nbatch_rows=300\n"
                                             "start_steps=100\nupdates_per_step=0.03"
