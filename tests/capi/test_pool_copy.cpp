@@ -13,6 +13,9 @@ struct Case {
   std::string task;
   std::string settings;
 };
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << c.task << ' ' << c.settings;
+}
 
 std::vector<Case> cases() {
   std::vector<Case> out;

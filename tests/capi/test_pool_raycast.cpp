@@ -21,6 +21,9 @@ rdm_ray_hit empty_hit() {
 struct Case {
   const char *task, *settings, *camera;
 };
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << c.task << ' ' << c.settings << ' ' << c.camera;
+}
 
 class PoolRaycast : public testing::TestWithParam<Case> {};
 

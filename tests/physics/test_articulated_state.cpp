@@ -51,6 +51,9 @@ struct Variant {
   const char* name;
   bool free_base = false, wide = false;
 };
+void PrintTo(const Variant& v, std::ostream* out) {
+  *out << v.name;
+}
 
 SceneDef def_of(const Variant& v) {
   SceneDef def = test::two_hands_def();

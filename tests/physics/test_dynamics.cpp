@@ -86,6 +86,9 @@ struct Kind {
   std::function<void(Dynamics&, double)> factor;
   std::function<void(SceneDef&, double)> build;
 };
+void PrintTo(const Kind& k, std::ostream* out) {
+  *out << k.name;
+}
 
 std::vector<Kind> kinds() {
   const auto links = [](SceneDef& def, auto change) {

@@ -91,6 +91,9 @@ struct SceneCase {
   const char* name;
   SceneDef (*def)();
 };
+void PrintTo(const SceneCase& c, std::ostream* out) {
+  *out << c.name;
+}
 class LargeRobots : public testing::TestWithParam<SceneCase> {};
 INSTANTIATE_TEST_SUITE_P(, LargeRobots,
                          testing::Values(SceneCase{"mounted", mounted_pair}, SceneCase{"many", many_joints}),

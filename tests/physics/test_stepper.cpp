@@ -140,6 +140,9 @@ struct SceneCase {
   const char* name;
   SceneDef (*def)();
 };
+void PrintTo(const SceneCase& c, std::ostream* out) {
+  *out << c.name;
+}
 class StepperScenes : public testing::TestWithParam<SceneCase> {};
 INSTANTIATE_TEST_SUITE_P(, StepperScenes,
                          testing::Values(SceneCase{"fixed", fixed_hands}, SceneCase{"free", free_hands},

@@ -13,6 +13,9 @@ namespace {
 struct Case {
   std::string task, engine, object = "";  // "": the task's own
 };
+void PrintTo(const Case& c, std::ostream* out) {
+  *out << c.task << ' ' << c.engine << ' ' << c.object;
+}
 
 // Tasks that have a choice of engines.
 std::vector<Case> all_cases() {
