@@ -27,14 +27,15 @@ mkdir -p "$files"
 git -C "$copy" fetch -q "$PWD" HEAD || die "cannot fetch $commit"
 { git -C "$copy" checkout -q -f "$commit" && git -C "$copy" clean -qfd; } || die "cannot check out $commit"
 
-# holds COMMIT MODE: what passed at that commit still does, since nothing that the mode looks at has changed. The page for a browser is
-# built by its own mode alone, and this script by none.
+# holds COMMIT MODE: what passed at that commit still does, since nothing that the mode looks at has changed. The page for a browser and
+# the list of tests under valgrind are read by their own modes alone, and this script by none.
 documents=(':!*.md' ':!examples/results' ':!examples/pictures' ':!cmake/release.sh')
 holds() {
   case $2 in
     quick | dev | small | physics | packages | pages) [ "$1" = "$commit" ] ;;
-    browser) git diff --quiet "$1" "$commit" -- . "${documents[@]}" 2> /dev/null ;;
-    *) git diff --quiet "$1" "$commit" -- . "${documents[@]}" ':!examples/browser' 2> /dev/null ;;
+    browser) git diff --quiet "$1" "$commit" -- . "${documents[@]}" ':!tests/valgrind.cmake' 2> /dev/null ;;
+    valgrind) git diff --quiet "$1" "$commit" -- . "${documents[@]}" ':!examples/browser' 2> /dev/null ;;
+    *) git diff --quiet "$1" "$commit" -- . "${documents[@]}" ':!examples/browser' ':!tests/valgrind.cmake' 2> /dev/null ;;
   esac
 }
 
