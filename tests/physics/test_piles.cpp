@@ -8,9 +8,8 @@
 #include <memory>
 
 #include "articulated.hpp"
-#include "base/cpu.hpp"
 #include "base/error.hpp"
-#include "physics/articulated/stepper.hpp"
+#include "isa_scope.hpp"
 #include "quality_towers.hpp"
 
 namespace rdm {
@@ -421,15 +420,6 @@ TEST(Sleep, IsWithinItsRanges) {
       EXPECT_THROW(make_scene(def), Error);
     }
 }
-
-// Puts the choice of instruction set back.
-class IsaScope {
- public:
-  ~IsaScope() { set_stepper_isa(before_.c_str()); }
-
- private:
-  std::string before_ = stepper_isa();
-};
 
 constexpr int32_t kWorlds = 3;
 

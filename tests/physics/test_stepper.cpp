@@ -6,22 +6,12 @@
 #include <string>
 
 #include "articulated.hpp"
-#include "base/cpu.hpp"
-#include "physics/articulated/stepper.hpp"
+#include "isa_scope.hpp"
 
 namespace rdm {
 namespace {
 
 constexpr int32_t kWorlds = 9;
-
-// Puts the choice of instruction set back.
-class IsaScope {
- public:
-  ~IsaScope() { set_stepper_isa(before_.c_str()); }
-
- private:
-  std::string before_ = stepper_isa();
-};
 
 SceneDef fixed_hands() {
   test::TwoHands config;

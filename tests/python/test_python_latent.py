@@ -17,18 +17,19 @@ class Latent(unittest.TestCase):
     def test_a_student_finds_what_its_teacher_is_told(self):
         with tempfile.TemporaryDirectory() as folder:
             here = lambda name: os.path.join(folder, name)
-            teacher = redman.train("lqr_line", algo="ppo", steps=300_000, envs=64, seed=1, out=here("teacher"), options=LATENT)
+            teacher = redman.train("lqr_line", algo="ppo", steps=1_000_000, envs=64, seed=1, out=here("teacher"), options=LATENT)
             adapt = {**LATENT, "latent_from": "history", "history": 8}
             first = redman.train("lqr_line", algo="ppo", steps=2000, envs=64, seed=1, out=here("first"), from_=here("teacher"),
                                  options={**adapt, "learning_rate": 0})
-            student = redman.train("lqr_line", algo="ppo", steps=150_000, envs=64, seed=1, out=here("student"), from_=here("teacher"),
+            student = redman.train("lqr_line", algo="ppo", steps=500_000, envs=64, seed=1, out=here("student"), from_=here("teacher"),
                                    options=adapt)
             score = {name: redman.evaluate(run.policy, "lqr_line", episodes=3000, seed=777, options={"action_delay": "0..3", "show_dynamics": True})
                      for name, run in (("teacher", teacher), ("first", first), ("student", student))}
             returns = {name: e.return_mean for name, e in score.items()}
             self.assertGreater(returns["teacher"], -4.3, returns)
             self.assertGreater(returns["student"], returns["first"] + 0.5, returns)
-            self.assertGreater(returns["student"], returns["teacher"] - 0.4, returns)  # one standard error of either is 0.11
+            # three seeds on two instruction sets close 0.76 to 0.97 of the gap
+            self.assertGreater(returns["student"] - returns["first"], 2 / 3 * (returns["teacher"] - returns["first"]), returns)
             loss = student.curve["Loss/Loss_pi"]
             self.assertLess(loss[-1], 0.75 * loss[0])  # at first no history tells the delay
             self.assertEqual(student.policy.info.state_dim, 7)

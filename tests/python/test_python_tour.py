@@ -7,6 +7,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
+import redman
 from test_python_show import VIEWER, pages_in
 
 FOLDER = Path(__file__).resolve().parents[2] / "examples" / "python"
@@ -47,6 +48,8 @@ class Tour(unittest.TestCase):
                         self.assertEqual(kinds(stored), kinds(again))
                         if "2e5" in text or "own" in text or "compare" in text:
                             continue  # other numbers
+                        if redman.build().kernels not in ("x86-64-v3", "x86-64-v4"):
+                            continue  # the policy shown acts the same with both; with others its actions have other last bits
                         for one, other in zip(stored["outputs"], again["outputs"]):
                             self.assertEqual(one.get("text"), other.get("text"))
                             ours, theirs = ("".join(each["data"]["text/html"]) if "data" in each else "" for each in (one, other))
