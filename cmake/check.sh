@@ -18,6 +18,7 @@ tidy|clang-tidy 14|new files
 halves|the simulator and the learner are each built, tested and installed without the other|the ABI, CMake
 small|memory, stack and program size of a build for size, compared with the table of examples/small|memory, dependencies
 budget|exported names, file sizes, dependencies, instructions at program start and build time, compared with the bounds in cmake/budget.txt|dependencies, start, CMake
+older|all tests but the slow ones with the instructions of x86-64-v2 alone, as on processors before 2013|arithmetic
 clang|the recorded hashes by clang 14 at -O3|arithmetic
 libc++|the recorded hashes by clang 14 with libc++|arithmetic, standard headers
 arm64 [all]|the recorded hashes on 64-bit ARM under qemu; `all`: also the tests that take half an hour there|arithmetic
@@ -155,6 +156,12 @@ case $mode in
       cmake --build build/without-$half -j "$(nproc)" >&2 || die "the build without $half failed: see above"
       run_tests without-$half -LE slow || exit 1
     done
+    ;;
+  older)
+    # A processor without AVX2: other widths, other last bits of networks, no carry-less products.
+    configure dev -B build/older -DCMAKE_CXX_FLAGS=-DRDM_BASE_CPU
+    cmake --build build/older -j "$(nproc)" >&2 || die "the build for an older processor failed: see above"
+    run_tests older -LE 'slow|format'
     ;;
   clang)
     # Another compiler at -O3 gives the same bytes: what is undefined shows where optimisers differ.

@@ -5,7 +5,7 @@ namespace {
 
 Cpu ask() {
   Cpu c;
-#if defined(__x86_64__)
+#if defined(__x86_64__) && !defined(RDM_BASE_CPU)  // check.sh older: as if it had none of them
   __builtin_cpu_init();  // a host's static objects may come here before the runtime has
   c.carryless = __builtin_cpu_supports("pclmul") && __builtin_cpu_supports("sse4.1");
   c.avx2 = __builtin_cpu_supports("avx2");
