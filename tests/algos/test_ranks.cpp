@@ -1,5 +1,7 @@
 // Learners of many processes: the bytes of one process, whatever their number; and what happens when one of
 // them is cancelled, dies or drifts.
+#include <algorithm>
+#include <cmath>
 #include <tuple>
 
 #include "heap_count.hpp"
@@ -291,7 +293,10 @@ TEST(Ranks, ADriftNamesItsRank) {
       world.epoch(*a);
       TensorInfo t;
       a->tensor(1, &t);
-      if (rank == drifter) t.data[0] += 0x1p-20f;  // the last bit alone an update may round away
+      // a last bit of the largest weight, which no update rounds away
+      float* const most = std::max_element(t.data, t.data + t.rows * t.cols,
+                                           [](float x, float y) { return std::abs(x) < std::abs(y); });
+      if (rank == drifter) *most = std::nextafter(*most, 0.0f);
       heard[size_of(rank)] = thrown([&] { world.epoch(*a); });
     });
     for (const Thrown& t : heard) {

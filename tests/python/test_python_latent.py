@@ -28,8 +28,7 @@ class Latent(unittest.TestCase):
             returns = {name: e.return_mean for name, e in score.items()}
             self.assertGreater(returns["teacher"], -4.3, returns)
             self.assertGreater(returns["student"], returns["first"] + 0.5, returns)
-            # 0.28 to 0.55 below it with three seeds on two instruction sets; one standard error of either is 0.11
-            self.assertGreater(returns["student"], returns["teacher"] - 0.6, returns)
+            self.assertGreater(returns["student"], returns["teacher"] - 0.4, returns)  # one standard error of either is 0.11
             loss = student.curve["Loss/Loss_pi"]
             self.assertLess(loss[-1], 0.75 * loss[0])  # at first no history tells the delay
             self.assertEqual(student.policy.info.state_dim, 7)

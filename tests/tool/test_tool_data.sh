@@ -20,7 +20,8 @@ rows() {
 }
 rows > now
 grep -q ' $' now && { echo 'a set was not made'; failed=1; }
-kernels=$("$tool" info --json | sed -n 's/.*"kernels":"\([^"]*\)".*/\1/p')
+"$tool" info --json > info.json
+kernels=$(one kernels info.json)
 [ "$kernels" != base ] || kernels=x86-64-v2 # of other processors: the same bytes
 sed "s/^/$kernels /" now > mine
 if [ "${2:-}" = --write ]; then
