@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # budget.sh [--write] [--time] [FOLDER]: what the library costs, measured in the builds FOLDER/dev, FOLDER/release and
 # FOLDER/small (build/...) as far as they are there, beside cmake/budget.txt; --write renews the rows that were measured.
-# --time also builds preset release once more, for its seconds. Nothing is built otherwise.
+# --time also builds preset release once more, and gives its processor time as a multiple of what a reference file takes on the same
+# machine. Nothing is built otherwise.
 # Ends with 77 when no row could be measured, which is a skip.
 set -u
 cd "$(dirname "$0")/.." || exit 1
@@ -25,8 +26,31 @@ stripped() { strip -o "$new/stripped" "$1" && stat -c %s "$new/stripped"; }
 current() { [ -e "$1" ] && [ -z "$(find include lib tasks algos capi CMakeLists.txt CMakePresets.json cmake/layers.cmake -newer "$1" -type f \
   \( -name '*.[hc]' -o -name '*.hpp' -o -name '*.cpp' -o -name '*.inl' -o -name '*.symbols' -o -name '*.awk' -o -name 'CMake*' -o -name '*.cmake' \) -print -quit)" ]; }
 
+# seconds COMMAND...: the processor seconds that it and its children take; fails as it does, and then says what it said
+seconds() {
+  local TIMEFORMAT='%U %S' status
+  { time "$@" > "$new/log" 2>&1; } 2> "$new/seconds"
+  status=$?
+  [ $status -eq 0 ] || { cat "$new/log" >&2; return $status; }
+  awk '{ print $1 + $2 }' "$new/seconds"
+}
+
+# reference: compiles the reference file as many times at once as there are processors, as the build does with its own files, twice
+reference() {
+  local k n pids pid
+  n=$(nproc)
+  for k in 1 2; do
+    pids=()
+    while [ ${#pids[@]} -lt "$n" ]; do
+      c++ -std=c++20 -O3 -I/usr/include/eigen3 -c "$new/reference.cpp" -o "$new/reference.${#pids[@]}.o" &
+      pids+=($!)
+    done
+    for pid in "${pids[@]}"; do wait "$pid" || return 1; done
+  done
+}
+
 measure() {
-  local library
+  local library before build after
   library=$folder/dev/libredman.so
   if [ -e "$library" ]; then
     echo "exports_stable $(($(exports "$library" REDMAN_0) + $(exports "$library" REDMAN_1) + $(exports "$library" REDMAN_1.0)))"
@@ -49,9 +73,24 @@ measure() {
   ! current "$library" || echo "small_bytes $(stripped "$library")"
   if [ $time = yes ]; then
     cmake --preset release -B "$new/release" -DCMAKE_C_COMPILER_LAUNCHER= -DCMAKE_CXX_COMPILER_LAUNCHER= > "$new/log" 2>&1 || { cat "$new/log" >&2; exit 1; }
-    TIMEFORMAT='%U %S'
-    { time CCACHE_DISABLE=1 cmake --build "$new/release" > "$new/log" 2>&1; } 2> "$new/seconds"
-    echo "release_build_seconds $(awk '{ print int($1 + $2) }' "$new/seconds")"
+    cat > "$new/reference.cpp" << 'END'
+#include <Eigen/Dense>
+#include <map>
+#include <regex>
+#include <string>
+int main(int argc, char **argv) {
+  std::map<std::string, Eigen::MatrixXd> all;
+  for (int i = 1; i < argc; ++i) all[argv[i]] = Eigen::MatrixXd::Random(argc, argc);
+  double sum = 0;
+  for (auto &[name, m] : all) sum += std::regex_match(name, std::regex("a+b*")) ? m.ldlt().solve(m).sum() : m.householderQr().solve(m).sum();
+  return sum > 0;
+}
+END
+    # before and after, since a machine's speed may change meanwhile
+    before=$(seconds reference) && build=$(seconds env CCACHE_DISABLE=1 cmake --build "$new/release") && after=$(seconds reference) || exit 1
+    echo "preset release: $build processor seconds; $(nproc) x 2 reference files: $before before, $after after" >&2
+    echo "release_build_units $(awk -v build="$build" -v before="$before" -v after="$after" -v n="$(nproc)" \
+      'BEGIN { printf "%.0f", build / ((before + after) / (4 * n)) }')"
   fi
 }
 measure > "$new/rows"
