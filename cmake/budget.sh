@@ -35,18 +35,9 @@ seconds() {
   awk '{ print $1 + $2 }' "$new/seconds"
 }
 
-# reference: compiles the reference file as many times at once as there are processors, as the build does with its own files, twice
+# reference: compiles the reference file twice for each processor, as many at once as there are, as the build does with its own files
 reference() {
-  local k n pids pid
-  n=$(nproc)
-  for k in 1 2; do
-    pids=()
-    while [ ${#pids[@]} -lt "$n" ]; do
-      c++ -std=c++20 -O3 -I/usr/include/eigen3 -c "$new/reference.cpp" -o "$new/reference.${#pids[@]}.o" &
-      pids+=($!)
-    done
-    for pid in "${pids[@]}"; do wait "$pid" || return 1; done
-  done
+  seq $(($(nproc) * 2)) | xargs -P "$(nproc)" -I '{}' c++ -std=c++20 -O3 -I/usr/include/eigen3 -c "$new/reference.cpp" -o "$new/reference.{}.o"
 }
 
 measure() {
