@@ -3,7 +3,7 @@
 # the commit. Then it makes the files to publish, and writes one page: what passed, on which machine, in what time, and the hash of
 # each file. It can be stopped and called again: a mode that has passed for this commit is not run again. Nor is one that has a row
 # in examples/results/release.csv, also from another machine, if nothing that the mode looks at has changed since the row's commit;
-# modes that read documents need a row of this commit.
+# modes that read any document need a row of this commit.
 #   build/published/COMMIT/README.md   the page         build/published/COMMIT/MODE.log   what a mode said
 #   build/published/COMMIT/files/      source archive, .deb files, wheel, policies, SHA256SUMS
 #   build/published/COMMIT/release.csv the rows, to be copied to examples/results and committed
@@ -29,9 +29,13 @@ git -C "$copy" fetch -q "$PWD" HEAD || die "cannot fetch $commit"
 
 # holds COMMIT MODE: what passed at that commit still does, since nothing that the mode looks at has changed. The page for a browser and
 # the list of tests under valgrind are read by their own modes alone, what the library costs by `budget` beside quick and dev, and this
-# script by none.
+# script by none. Of the documents `small` and `physics` read one each, with the table that they measure again.
 holds() {
-  case $2 in quick | dev | small | physics | packages | pages) [ "$1" = "$commit" ]; return ;; esac
+  case $2 in
+    quick | dev | packages) [ "$1" = "$commit" ]; return ;;
+    small) git diff --quiet "$1" "$commit" -- examples/small/README.md 2> /dev/null || return ;;
+    physics) git diff --quiet "$1" "$commit" -- lib/physics/README.md 2> /dev/null || return ;;
+  esac
   local unread=(':!*.md' ':!examples/results' ':!examples/pictures' ':!cmake/release.sh')
   [ "$2" = browser ] || unread+=(':!examples/browser')
   [ "$2" = valgrind ] || unread+=(':!tests/valgrind.cmake')
