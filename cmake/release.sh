@@ -27,9 +27,9 @@ mkdir -p "$files"
 git -C "$copy" fetch -q "$PWD" HEAD || die "cannot fetch $commit"
 { git -C "$copy" checkout -q -f "$commit" && git -C "$copy" clean -qfd; } || die "cannot check out $commit"
 
-# holds COMMIT MODE: what passed at that commit still does, since nothing that the mode looks at has changed. The page for a browser and
-# the list of tests under valgrind are read by their own modes alone, what the library costs by `budget` beside quick and dev, and this
-# script by none. Of the documents `small` and `physics` read one each, with the table that they measure again.
+# holds COMMIT MODE: what passed at that commit still does, since nothing that the mode looks at has changed. The page for a browser,
+# the list of tests under valgrind and the script of small programs are read by their own modes alone, what the library costs by `budget`
+# beside quick and dev, and this script by none. Of the documents `small` and `physics` read one each, with the table that they measure again.
 holds() {
   case $2 in
     quick | dev | packages) [ "$1" = "$commit" ]; return ;;
@@ -39,6 +39,7 @@ holds() {
   local unread=(':!*.md' ':!examples/results' ':!examples/pictures' ':!cmake/release.sh')
   [ "$2" = browser ] || unread+=(':!examples/browser')
   [ "$2" = valgrind ] || unread+=(':!tests/valgrind.cmake')
+  [ "$2" = small ] || unread+=(':!cmake/small_table.sh')
   [ "$2" = budget ] || unread+=(':!cmake/budget.*')
   git diff --quiet "$1" "$commit" -- . "${unread[@]}" 2> /dev/null
 }
@@ -99,7 +100,7 @@ done
 {
   echo "# redman $version"
   echo
-  echo "$good of $number jobs passed, in $((sum / 3600)) h $((sum / 60 % 60)) min, builds included. Commit \`$commit\`; a job with another commit ran there, and nothing that it looks at has changed since: documents have, examples/browser, which \`browser\` alone builds, tests/valgrind.cmake, which \`valgrind\` alone reads, or cmake/budget.*, which \`budget\` reads beside \`quick\` and \`dev\`."
+  echo "$good of $number jobs passed, in $((sum / 3600)) h $((sum / 60 % 60)) min, builds included. Commit \`$commit\`; a job with another commit ran there, and nothing that it looks at has changed since: documents have, examples/browser, which \`browser\` alone builds, tests/valgrind.cmake, which \`valgrind\` alone reads, cmake/small_table.sh, which \`small\` alone runs, or cmake/budget.*, which \`budget\` reads beside \`quick\` and \`dev\`."
   echo
   echo "$(. /etc/os-release && echo "$PRETTY_NAME"); $(c++ --version | head -n1). Machines:"
   echo
